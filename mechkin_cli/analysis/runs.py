@@ -288,6 +288,7 @@ def _asked(
     if mode is not None:
         a_text("mode", mode, '"A"')
         session = session.in_mode(mode)
+    session = statics.rested(session)
     layouts = chosen_tables(model.built, tables, SWEEP)
     balances = chosen(model.built.balances, tables) if balanced else ()
     named = wanted_names(session, SWEEP, (), quantities)

@@ -33,7 +33,8 @@ from mechkin_cli.building.fields import (
 from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
-from mechkin_cli.building.motion import build_motion, point_guides
+from mechkin_cli.building.friction import without_friction
+from mechkin_cli.building.motion import build_motion, near_rest, point_guides
 from mechkin_cli.building.play import build_plays, loose_in_sweep, note_tight, with_plays
 from mechkin_cli.building.responses import (
     build_assembly,
@@ -266,6 +267,7 @@ def build_problem(
     if motion is None:
         motion = build_motion(fields, file.motion, moving_joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
+    motion = near_rest(motion, assembly, fields.units)
     limits = (*build_limits(fields, file, joints, couplings), *flanks.values())
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
@@ -287,6 +289,8 @@ def build_problem(
     loads = LoadBuilder(fields, links, joints, points, quantities)
     loads.add_all(file.loads)
     mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
+    if motion.rest is not None:
+        mechanism = without_friction(fields, mechanism, ("motion", "rest"))
     problem = replace(problem, mechanism=mechanism, load_laws=laws)
     refuse_tied_friction(fields, file.loads, problem)
     if not (file.free_runs and responses):

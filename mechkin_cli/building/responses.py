@@ -19,6 +19,7 @@ import numpy as np
 
 from mechkin_cli import idle, mobility, tolerances
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_coordinate
+from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, spaced_moments
 from mechkin_cli.building.spacing import has_too_many_rows
@@ -363,6 +364,7 @@ class _ResponseBuilder:
         ) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
+        mechanism = without_friction(fields, mechanism, path)
         return ResponseProblem(
             name=name,
             place=fields.document.key_place(path),

@@ -104,8 +104,11 @@ class Problem:
     @property
     def acting(self) -> Sequence[tuple[str, str]]:
         """Where efforts act (joint, coordinate): at actuators, else at the inputs."""
-        drives = self.mechanism.drives
-        return self.motion.driven if drives is None else drives.acting
+        drives, rest = self.mechanism.drives, self.motion.rest
+        if drives is not None:
+            return drives.acting
+        free = () if rest is None else rest.inputs
+        return [at for number, at in enumerate(self.motion.driven) if number not in free]
 
     @cached_property
     def has_idle(self) -> bool:

@@ -1,5 +1,5 @@
 """The search for one equilibrium: Newton's steps towards any place at which the forces vanish,
-stable or not, down along the forces where their slopes say nothing.
+stable or not; where they end without one, once down to where the mechanism would come to rest.
 
 Each step is taken on a chart about the place before, so no dead centre of a coordinate stops it. It
 goes as far as the forces become smaller, and as the places along it lie on one smooth branch.
@@ -24,8 +24,7 @@ from mechkin_cli.statics.forces import DrivenAt, Forces, ForcesAt, FreePlace, su
 from mechkin_cli.statics.places import Place, Statics, eigen
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Moments, ResponseProblem
-    from mechkin_cli.session import Session
+    from mechkin_cli.session import Coordinate, Session
     from mechkin_cli.show import Floats
 
 
@@ -58,33 +57,33 @@ class Search(NamedTuple):
 
 @dataclass(frozen=True)
 class Balancing:
-    """The forces of a run about places, at one moment.
+    """The forces of a mechanism about places, at one moment.
 
     Attributes:
-        chosen: the session whose inputs are the run's independent coordinates and then the driven
-            ones.
-        response: the run.
+        chosen: the session of one row, among whose inputs are the coordinates that are free.
+        coordinates: these (joint, coordinate), which fix a place.
         forces: of what is free.
         alone: of each load alone, and of all weights.
     """
 
     chosen: Session
-    response: ResponseProblem
+    coordinates: list[Coordinate]
     forces: Forces
     alone: tuple[Forces, ...]
 
     @classmethod
-    def of(cls, chosen: Session, response: ResponseProblem) -> Balancing:
-        """The forces of a run, whose motion has one row."""
-        problem = chosen.problem
-        motion = problem.motion._replace(
-            inputs=problem.motion.inputs[len(response.independent) :], rows=1, leader=None
+    def of(cls, chosen: Session, coordinates: list[Coordinate]) -> Balancing:
+        """The forces where some inputs of a session of one row are free."""
+        problem, motion = chosen.problem, chosen.problem.motion
+        driven = tuple(
+            item for item in motion.inputs if (item.joint, item.coordinate) not in coordinates
         )
-        free = free_session(chosen, response.independent)
+        motion = motion._replace(inputs=driven, leader=None, rest=None)
+        free = free_session(chosen, coordinates)
         free = replace(free.moved(problem.moved(motion)), packing=chosen.packing)
-        driven = DrivenAt.row(free)
-        alone = tuple(Forces(one, driven) for one in _alone(free))
-        return cls(chosen, response, Forces(free, driven), alone)
+        at = DrivenAt.row(free)
+        alone = tuple(Forces(one, at) for one in _alone(free))
+        return cls(chosen, coordinates, Forces(free, at), alone)
 
     def largest(self, place: FreePlace) -> float:
         """The largest force of one load alone, or of all weights: what balances at a place."""
@@ -114,14 +113,32 @@ class Balancing:
         tangents = statics.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
         return self.forces.place(state, turns, tangents)
 
+    def uncharted(self, statics: Statics, place: FreePlace) -> Place:
+        """The same place of the chosen session."""
+        session, layout = self.chosen, self.chosen.layout
+        inputs = session.inputs.values[:, 0].copy()
+        inputs[statics.free] = self.named(place)[0]
+        state = place.state.copy()
+        slots = session.structure.tree_slots
+        turns = np.zeros(turn_count(session.plan))
+        closing = turns.size - len(slots)
+        turns[:closing] = place.turns[:closing]
+        for slot, row in slots.items():
+            turns[row] = np.rint(state[slot] / (2.0 * pi))
+            state[slot] -= 2.0 * pi * turns[row]
+        reduced, _ = statics.reduced(inputs[:, None])
+        for number, (edge, freedom) in enumerate(session.graph.inputs):
+            state[layout.state(edge, freedom)] = reduced[number, 0]
+        return Place(inputs, state, turns)
+
     def named(self, place: FreePlace) -> tuple[Floats, Floats]:
-        """The run's independent coordinates (freedoms,) at a place, and their rates (freedoms,
-        freedoms) where one direction of its chart after the other has unit rate."""
-        return coordinates_at(self.forces, self.response.independent, place)
+        """The free coordinates (freedoms,) at a place, and their rates (freedoms, freedoms) where
+        one direction of its chart after the other has unit rate."""
+        return coordinates_at(self.forces, self.coordinates, place)
 
 
 def coordinates_at(
-    forces: Forces, coordinates: list[tuple[str, str]], place: FreePlace
+    forces: Forces, coordinates: list[Coordinate], place: FreePlace
 ) -> tuple[Floats, Floats]:
     """Some coordinates (coordinates,) at a place in kernel units, and their rates (coordinates,
     freedoms) where one direction of its chart after the other has unit rate."""
@@ -165,7 +182,7 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
     place, steps = start, 0
     largest = balancing.largest(place)
     count = balancing.forces.freedoms
-    forces, length, way = np.full(count, np.nan), np.inf, 0.0
+    forces, length, settled = np.full(count, np.nan), np.inf, False
     while True:
         found = slopes(balancing.forces, place)
         if found is None:
@@ -181,14 +198,14 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
             return Search(place, forces, max(largest, slope), SearchEnd.STEPS, steps)
         wanted = newton_step(matrix, forces)
         length = _length(wanted)
-        down = -forces * (tolerances.EQUILIBRIUM_REACH / _length(forces))
-        if length > tolerances.WILD_STEP:
-            wanted = down
-        elif length > tolerances.EQUILIBRIUM_REACH:
+        if length > tolerances.EQUILIBRIUM_REACH:
             wanted = wanted * (tolerances.EQUILIBRIUM_REACH / length)
-        moved, end = _moved(balancing.forces, place, wanted, forces)
-        if moved is None and length > tolerances.EQUILIBRIUM_STEP:
-            moved, _ = _moved(balancing.forces, place, down, forces)
+        moved, end = None, SearchEnd.LEAST
+        if length <= tolerances.WILD_STEP:
+            moved, end = _moved(balancing.forces, place, wanted, forces)
+        if moved is None and not settled and length > tolerances.EQUILIBRIUM_STEP:
+            lower = settle(balancing, place)
+            settled, moved = True, None if lower is place else lower
         if moved is None:
             # rounding alone may be left
             largest = max(balancing.largest(place), slope)
@@ -197,7 +214,6 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
             return Search(place, forces, largest, end, steps)
         steps += 1
         place = moved
-        way += min(length, tolerances.EQUILIBRIUM_REACH)
         slide = float(np.max(np.abs(balancing.named(place)[0]))) if steps % 8 == 0 else 0.0
         if slide > tolerances.FAR_EQUILIBRIUM:
             return Search(place, forces, largest, SearchEnd.RUNAWAY, steps)

@@ -19,6 +19,7 @@ from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Ask, RowInputs, turn_of
+from mechkin_cli.statics.forces import combined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -136,19 +137,33 @@ class Statics:
             most = np.where(found.good, np.maximum(most, sizes), most)
         return most
 
-    def tangents(self, inputs: Floats, states: Floats) -> Floats:
-        """Rates of the columns (free, columns, places) where one free coordinate after the other
-        has unit rate."""
+    def tangents(
+        self, inputs: Floats, states: Floats, moved: Sequence[int] | None = None
+    ) -> Floats:
+        """Rates of the columns (numbers, columns, places) where one free coordinate, or input
+        `moved`, after the other has unit rate."""
         places = inputs.shape[1]
-        repeated = np.tile(np.arange(places), self.count)
+        numbers = self.free if moved is None else moved
+        repeated = np.tile(np.arange(places), len(numbers))
         rates = np.zeros((inputs.shape[0], repeated.size))
-        for number, k in enumerate(self.free):
+        for number, k in enumerate(numbers):
             rates[k, number * places : (number + 1) * places] = 1.0
         reduced, _ = self.reduced(inputs)
         rows = RowInputs(reduced[:, repeated], states[:, repeated], rates)
         batch = self.session.run(rows, Ask(Demand.VELOCITY, derivatives=True, iterations=0))
         assert batch.first is not None
-        return batch.first.reshape(-1, self.count, places).transpose(1, 0, 2)
+        return batch.first.reshape(-1, len(numbers), places).transpose(1, 0, 2)
+
+    def beside(self, place: Place, steps: Floats, time: Floats) -> Forced:
+        """Forces (free, steps) where all inputs are `steps` (inputs, steps) away, at times."""
+        moved = np.flatnonzero(steps.any(axis=1)).tolist()
+        inputs = place.inputs[:, None] + steps
+        states = np.repeat(place.state[:, None], steps.shape[1], axis=1)
+        if moved:
+            tangents = self.tangents(place.inputs[:, None], place.state[:, None], moved)[:, :, 0]
+            states = self.session.moved_along(states, combined(tangents, steps[moved]))
+        turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
+        return self.forces(inputs, states, turns, time)
 
     def place(self, inputs: Floats, state: Floats) -> Place:
         """A closed place at some inputs, to which nothing was followed."""

@@ -38,6 +38,7 @@ class EquilibriumResult(FreeResult):
     """The equilibria of a run.
 
     Args:
+        response: the file's entry.
         balancing: the forces of the run.
         start: the first assembly.
         found: the equilibria with their verdicts; without any there is one row without a place.
@@ -46,12 +47,13 @@ class EquilibriumResult(FreeResult):
 
     def __init__(
         self,
+        response: ResponseProblem,
         balancing: Balancing,
         start: AssemblyStart,
         found: Sequence[tuple[Search, Verdict]],
         notes: Sequence[Diagnostic],
     ) -> None:
-        free, response = balancing.forces.session, balancing.response
+        free = balancing.forces.session
         count = max(len(found), 1)
         session = free.moved(free.problem.moved(_rows(response, count)))
         rows = SweepRows.without_guesses(free.layout.states, turn_count(free.plan), count)

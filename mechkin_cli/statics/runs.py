@@ -61,20 +61,23 @@ def balance(
 def _near(one: Prepared) -> EquilibriumResult:
     """The equilibrium near the start."""
     response = one.response
-    balancing = Balancing.of(one.chosen, response)
+    balancing = Balancing.of(one.chosen, response.independent)
     if one.begun is None or one.start.state is None:
-        return EquilibriumResult(balancing, one.start, [], [])
+        return EquilibriumResult(response, balancing, one.start, [], [])
     statics = Statics(one.chosen, range(len(response.independent)))
     begin = statics.place(one.chosen.inputs.values[:, 0], one.start.state)
     try:
         place = balancing.charted(statics, begin)
-    except ValueError as e:
-        import traceback; traceback.print_exc()
-        return EquilibriumResult(balancing, one.start, [], [_dead_start(response)])
+    except ValueError:
+        return EquilibriumResult(response, balancing, one.start, [], [_dead_start(response)])
     found = search(balancing, place)
     if not found.found:
-        return EquilibriumResult(balancing, one.start, [], [not_found(balancing, found)])
-    return EquilibriumResult(balancing, one.start, [(found, judged(balancing, found))], [])
+        return EquilibriumResult(
+            response, balancing, one.start, [], [not_found(response, balancing, found)]
+        )
+    return EquilibriumResult(
+        response, balancing, one.start, [(found, judged(balancing, found))], []
+    )
 
 
 def _dead_start(response: ResponseProblem) -> Diagnostic:
@@ -92,7 +95,7 @@ _HINTS = {
 }
 
 
-def not_found(balancing: Balancing, found: Search) -> Diagnostic:
+def not_found(response: ResponseProblem, balancing: Balancing, found: Search) -> Diagnostic:
     """Why a search has not found an equilibrium, and where it ended."""
     session = balancing.chosen
     places = input_numbers(session.problem, session.layout, balancing.named(found.place)[0])
@@ -103,7 +106,7 @@ def not_found(balancing: Balancing, found: Search) -> Diagnostic:
         "error",
         f"no place near the start was found at which the loads balance: {found.end.value} at "
         f"{where}",
-        balancing.response.place,
+        response.place,
         measured=f"{share:.1e} of the largest force of one load is left there",
         hint=_HINTS[found.end],
         numbers=places,

@@ -127,10 +127,7 @@ def _lowest_frequency(matrix: Floats, masses: Floats) -> float:
     values, vectors = eigen(matrix)
     scaled = vectors / np.sqrt(values)
     inner = np.array(
-        [
-            [float(summed(a * summed(masses.T * b[:, None]))) for b in scaled.T]
-            for a in scaled.T
-        ]
+        [[float(summed(a * summed(masses.T * b[:, None]))) for b in scaled.T] for a in scaled.T]
     )
     most = float(eigen(0.5 * (inner + inner.T))[0][-1])
     heaviest = float(np.max(np.abs(masses)))

@@ -38,7 +38,7 @@ def in_window(one: Prepared) -> EquilibriumResult:
     """All equilibria of an entry of the file with a window; its middle need not be assembled."""
     response, session = one.response, one.chosen
     start = replace(one.start, diagnostics=[])
-    balancing = Balancing.of(session, response)
+    balancing = Balancing.of(session, response.independent)
     statics = Statics(session, range(len(response.independent)))
     assert response.search is not None
     known = Known(balancing, response.search.window)
@@ -47,12 +47,12 @@ def in_window(one: Prepared) -> EquilibriumResult:
         curve.look()
         notes = curve.notes(response)
     else:
-        notes = _from_starts(balancing, statics, known)
+        notes = _from_starts(response, balancing, statics, known)
     judgements = [(found, judged(balancing, found)) for found in known.found]
     judgements.sort(key=lambda pair: pair[1].coordinates.tolist())
     if not judgements:
         notes = [*notes, _none(response)]
-    return EquilibriumResult(balancing, start, judgements, notes)
+    return EquilibriumResult(response, balancing, start, judgements, notes)
 
 
 @dataclass
@@ -132,7 +132,7 @@ class _Curve:
         self.base = statics.session.inputs.values[:, 0]
         self.lost: list[float] = []
         self.at_dead_centres: list[float] = []
-        self.indifferent: list[tuple[float, float]] = []
+        self.indifferent: list[tuple[Floats, Floats]] = []
         self.incomplete = 0.0
         self.largest = 0.0
 
@@ -143,7 +143,8 @@ class _Curve:
             after = self._assemblies(high)
             ways = [self._stretch(low, high, place) for place in before]
             ways += [
-                one for one in (self._stretch(high, low, place) for place in after)
+                one
+                for one in (self._stretch(high, low, place) for place in after)
                 if not one.is_whole
             ]
             for one in ways:
@@ -228,18 +229,16 @@ class _Curve:
             return False
         k = int(np.argmax(both))
         last = k + int(np.argmin(np.append(zero[k:], False)))
-        found = self._found(self._place(one, k))
-        self.indifferent.append((float(one.values[k]), float(one.values[last - 1])))
-        if found is not None and not self._touches_known(one, k):
+        part = slice(k, last)
+        known = any(
+            pose_number(self.statics.session.layout, states, one.states[:, k]) is not None
+            for _, states in self.indifferent
+        )
+        self.indifferent.append((one.values[part], one.states[:, part]))
+        found = None if known else self._found(self._place(one, k))
+        if found is not None:
             self.known.add(found)
         return bool(zero.all())
-
-    def _touches_known(self, one: _Stretch, k: int) -> bool:
-        """Whether the stretch of places that balance goes on from that of the cell before."""
-        return len(self.indifferent) > 1 and any(
-            abs(float(one.values[k]) - other[1]) <= tolerances.SAME_EQUILIBRIUM
-            for other in self.indifferent[:-1]
-        )
 
     def _between(self, one: _Stretch, k: int) -> None:
         """The zero between two samples: by Newton from the secant, else by halving."""
@@ -249,7 +248,9 @@ class _Curve:
         for _ in range(tolerances.MOST_HALVINGS):
             middle = at + (end - at) * (below / (below - above))
             middle = min(max(middle, min(at, end)), max(at, end))
-            way = self.statics.way(self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place)
+            way = self.statics.way(
+                self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place
+            )
             if way.reached < 2:
                 return
             there = Place(self._inputs(np.array([middle]))[:, 0], way.states[:, 1], way.turns[:, 1])
@@ -257,7 +258,9 @@ class _Curve:
                 return
             # not there: halve instead
             middle = 0.5 * (at + end)
-            way = self.statics.way(self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place)
+            way = self.statics.way(
+                self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place
+            )
             if way.reached < 2:
                 return
             inputs = self._inputs(np.array([middle]))
@@ -328,12 +331,14 @@ class _Curve:
             return input_text(input_number(session.problem, session.layout, number, value))
 
         for value in self.at_dead_centres:
-            text = f"an equilibrium lies at a dead centre of the window's coordinate, {words(value)}"
+            text = (
+                f"an equilibrium lies at a dead centre of the window's coordinate, {words(value)}"
+            )
             hint = "name another coordinate in window:, which moves there"
             notes.append(Diagnostic("at-dead-centre", "warning", text, response.place, hint=hint))
         if self.indifferent:
-            low = min(min(pair) for pair in self.indifferent)
-            high = max(max(pair) for pair in self.indifferent)
+            low = min(float(values.min()) for values, _ in self.indifferent)
+            high = max(float(values.max()) for values, _ in self.indifferent)
             text = f"the loads balance all along from {words(low)} to {words(high)}"
             notes.append(Diagnostic("indifferent", "note", text, response.place))
         if self.lost:
@@ -361,9 +366,10 @@ def _none(response: ResponseProblem) -> Diagnostic:
     return Diagnostic("no-equilibrium", "error", text, response.place, hint=hint)
 
 
-def _from_starts(balancing: Balancing, statics: Statics, known: Known) -> list[Diagnostic]:
+def _from_starts(
+    response: ResponseProblem, balancing: Balancing, statics: Statics, known: Known
+) -> list[Diagnostic]:
     """Searches from places spread over the window; how sure it is that they found all."""
-    response = balancing.response
     assert response.search is not None
     low, high = known.ends
     base = statics.session.inputs.values[:, 0]

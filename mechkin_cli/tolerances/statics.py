@@ -32,7 +32,7 @@ marginal place, to which Newton's steps shrink too slowly."""
 EQUILIBRIUM_REACH: Final = 0.5
 """Longest step of the search, rad or length units: most forces do not change sign twice in it."""
 
-WILD_STEP: Final = 3.0
+WILD_STEP: Final = 30.0
 """A Newton step beyond this, rad or length units, says nothing: slopes are near zero. The search
 goes down along the forces instead."""
 
@@ -103,3 +103,43 @@ half a radian bend by less, and a jump to another branch is a change by its whol
 DEAD_COORDINATE: Final = 1e6
 """Where a named coordinate moves by less than one part in this of the mechanism's motion, it stands
 at a dead centre, and there is no stiffness by it."""
+
+# Sweeps at rest.
+
+MOST_REST_ROWS: Final = 256
+"""Rows of a sweep at rest that are corrected at once."""
+
+MOST_CHORDS: Final = 12
+"""Corrections of predicted equilibria with one stiffness: three or four are enough."""
+
+CHORD_GAIN: Final = 0.5
+"""Each correction has to be smaller than the one before by this, or it was predicted too far."""
+
+REST_ROUNDING: Final = 1e-9
+"""Corrections that stay below this, rad or length units, are rounding of weak forces."""
+
+REST_MISS: Final = 0.3
+"""How far from the row before the next one may be, rad or length units, before any rate of the
+branch is known."""
+
+REST_SMALL: Final = 1e-3
+"""Corrections below this, rad or length units, are no jump to another branch."""
+
+LEAST_REST_WAY: Final = 1e-3
+"""A way of the inputs from row to row is counted as at least this long beside the coordinates at
+rest, as where time alone goes on."""
+
+MOST_ARCS: Final = 400
+"""Steps by arclength from one row to the next: a bend takes a dozen."""
+
+LEAST_ARC: Final = 1e-9
+"""Shortest step by arclength: below, branches that meet are not told apart."""
+
+NEAR_FOLD: Final = 1e-3
+"""Where the inputs move by less than this part of the branch's length, it turns back there."""
+
+FOLD_STEP: Final = 1e-7
+"""Arclength within which a fold is located: its inputs are then right to the square of that."""
+
+ARC_COSINE: Final = 0.9
+"""Least cosine between the directions of a branch a step apart."""
