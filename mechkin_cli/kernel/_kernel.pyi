@@ -666,6 +666,14 @@ class Stepper:
 MOST_PATH_STEPS: int
 """Steps of one path at most."""
 
+def symmetric_eigen(a: Floats, b: Floats) -> tuple[Floats, Floats] | None:
+    """Values (n,), rising, and vectors (n, n) as columns of A x = lambda B x with symmetric (n, n)
+    matrices, x^T B x = 1; None where B is not positive definite or a number is not finite."""
+
+def eigen(a: Floats) -> tuple[Floats, Floats, Floats, Floats] | None:
+    """Real and imaginary parts of the values (n,) of a real matrix (n, n), by rising size, and of
+    the vectors (n, n) as columns of unit length; None where a number is not finite."""
+
 def closing_turns(plan: Plan) -> list[tuple[int, int, int, int]]:
     """(closing joint, freedom, first slot, slots) of the turns that following carries along.
 
