@@ -415,7 +415,10 @@ def asking(
             for key, (low, high) in ends.items()
         },
     )
-    file = section_with(built.file, equilibria={**built.file.equilibria, name: section})
+    # the file's tables belong to its own runs
+    file = section_with(
+        built.file, equilibria={**built.file.equilibria, name: section}, tables=(), balances=()
+    )
     return name, Design(build(file, built.document, design.given), design.stem, design.given)
 
 

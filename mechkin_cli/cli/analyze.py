@@ -88,7 +88,7 @@ def certify_sweeps(analyses: Sequence[Analysis]) -> tuple[Diagnostic, ...]:
         if analysis.run == SWEEP:
             _ = analysis.certificate
             continue
-        text = f"the rows of response {analysis.run} are not proven: --certify proves sweeps"
+        text = f"the rows of {analysis.run} are not proven: --certify proves sweeps"
         notes.append(Diagnostic("not-proven", "note", text))
     return tuple(notes)
 

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis, Stream
     from mechkin_cli.mechanism import Joint, Problem, Wanted
     from mechkin_cli.structure import SolverGraph
+    from mechkin_cli.sweep import Result
     from mechkin_cli.tables import ColumnErrors, Summary
 
 
@@ -191,7 +192,8 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     if analysis.run == SWEEP:
         rows = [("driven", _driven(analysis.model.problem))]
     else:
-        name = f"{name}, response {analysis.run}"
+        word = "equilibria" if _rests(analysis) else "response"
+        name = f"{name}, {word} {analysis.run}"
         rows = [("free", _free(analysis))]
     rows.append(("loops", _loops(analysis.model.problem, result.graph)))
     if result.mode:
@@ -199,13 +201,16 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     verdicts = RunVerdicts.of(result)
     worst = dict(verdicts.worst)
     if analysis.run != SWEEP:
-        off = np.asarray(result.quantity("row.energy_error").value)
+        told = "imbalance" if _rests(analysis) else "energy error"
+        off = np.asarray(result.quantity(f"row.{told.replace(' ', '_')}").value)
         if np.isfinite(off).any():
-            worst["energy error"] = float(off[np.isfinite(off)].max())
+            worst[told] = float(off[np.isfinite(off)].max())
     rows += [("rows", _rows(verdicts)), ("worst", _worst(worst))]
     if analysis.run == SWEEP and result.is_certified:
         rows.append(("proof", analysis.certificate.words))
-    if analysis.run != SWEEP:
+    if _rests(analysis):
+        rows.insert(-1, ("found", _found(result)))
+    elif analysis.run != SWEEP:
         rows.insert(-1, ("ended", _ended(analysis)))
     if errors:
         rows.append(("errors", errors_line(analysis)))
@@ -245,6 +250,22 @@ def _free(analysis: Analysis) -> str:
     if own.driven:
         parts.append(f"driven: {', '.join(one.name for one in own.driven)}")
     return "; ".join(parts)
+
+
+def _rests(analysis: Analysis) -> bool:
+    """Whether a run is one of equilibria."""
+    own = analysis.model.design
+    return analysis.run != SWEEP and own.response(analysis.run).search is not None
+
+
+def _found(result: Result) -> str:
+    """How many equilibria there are, and of which kinds."""
+    kinds = Counter(event.partition(" ")[0] for event in result.events if event)
+    count = sum(kinds.values())
+    if not count:
+        return "no equilibrium"
+    words = ", ".join(f"{number} {kind}" for kind, number in kinds.items())
+    return f"{count} equilibri{'um' if count == 1 else 'a'}: {words}"
 
 
 def _ended(analysis: Analysis) -> str:
@@ -497,6 +518,8 @@ def _positions(analysis: Analysis) -> str:
         nodes = f"{counted(result.nodes, 'node')} followed, the rest filled in between"
         return f"positions: {result.rows} rows, {nodes}"
     response = analysis.model.design.response(analysis.run)
+    if response.search is not None:
+        return f"positions: {result.rows} places, found where the loads balance"
     step = f"a tolerance of {response.tolerance:g}"
     if response.fixed_step is not None:
         step = f"steps of {response.fixed_step:g} s"

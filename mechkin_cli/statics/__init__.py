@@ -21,6 +21,6 @@ __getattr__, __dir__ = lazy_names(
         "forces": "Derivative DrivenAt Forces ForcesAt FreePlace",
         "rest": "rested",
         "result": "EquilibriumResult",
-        "runs": "balance",
+        "runs": "balance balanced",
     },
 )

@@ -40,8 +40,8 @@ class SearchEnd(Enum):
 
 
 class Search(NamedTuple):
-    """The last place of a search, the forces there (freedoms,), the largest force of one load and
-    the largest slope of the forces, and why it ended; forces in kernel units."""
+    """The last place of a search, the forces there (freedoms,), the largest force or slope of one
+    load (`Balancing.largest`), and why it ended; forces in kernel units."""
 
     place: FreePlace
     forces: Floats
@@ -86,12 +86,13 @@ class Balancing:
         return cls(chosen, coordinates, Forces(free, at), alone)
 
     def largest(self, place: FreePlace) -> float:
-        """The largest force of one load alone, or of all weights: what balances at a place."""
-        none, most = np.zeros((self.forces.freedoms, 1)), 0.0
+        """The largest force of one load alone, or of all weights, and the largest slope of one, for
+        a unit of the chart: what balances at a place and about it."""
+        most = 0.0
         for one in self.alone:
-            found = one.at(place, none)
-            if found.good.all():
-                most = max(most, float(np.max(np.abs(found.forces))))
+            found = slopes(one, place)
+            if found is not None:
+                most = max(most, *(float(np.max(np.abs(each))) for each in found))
         return most
 
     def charted(self, statics: Statics, place: Place) -> FreePlace:
@@ -198,7 +199,7 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
             return Search(place, forces, max(largest, slope), SearchEnd.STEPS, steps)
         wanted = newton_step(matrix, forces)
         length = _length(wanted)
-        if length > tolerances.EQUILIBRIUM_REACH:
+        if tolerances.EQUILIBRIUM_REACH < length <= tolerances.WILD_STEP:
             wanted = wanted * (tolerances.EQUILIBRIUM_REACH / length)
         moved, end = None, SearchEnd.LEAST
         if length <= tolerances.WILD_STEP:
@@ -211,6 +212,8 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
             largest = max(balancing.largest(place), slope)
             if size <= tolerances.EQUILIBRIUM_BALANCE * largest:
                 end = SearchEnd.FOUND
+            elif settled and length > tolerances.WILD_STEP:
+                end = SearchEnd.RUNAWAY
             return Search(place, forces, largest, end, steps)
         steps += 1
         place = moved
@@ -303,6 +306,8 @@ def settle(balancing: Balancing, start: FreePlace) -> FreePlace:
         pushes, matrix = known
         values, vectors = eigen(0.5 * (matrix + matrix.T))
         scale = float(np.max(np.abs(values)))
+        if not scale > 0.0:
+            scale = _length(pushes)
         if not scale > 0.0:
             return place
         sizes = np.maximum(np.abs(values), tolerances.SETTLING_STIFFNESS * scale)

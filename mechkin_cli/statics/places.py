@@ -8,12 +8,12 @@ call takes many places, in lanes.
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import ZERO, effort_quantity
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
@@ -202,31 +202,7 @@ def _alone(session: Session) -> tuple[Session, ...]:
 
 
 def eigen(matrix: Floats) -> tuple[Floats, Floats]:
-    """Eigenvalues, rising, and vectors as columns of a symmetric matrix, by Jacobi's rotations in a
-    fixed order: the same bits on every machine (G. H. Golub, C. F. Van Loan, Matrix Computations,
-    2013, section 8.5)."""
-    a = np.array(matrix, dtype=np.float64)
-    count = a.shape[0]
-    vectors = np.eye(count)
-    for _ in range(tolerances.MOST_JACOBI_SWEEPS):
-        off = np.abs(a - np.diag(np.diag(a)))
-        if not off.max(initial=0.0) > np.finfo(float).eps * np.abs(np.diag(a)).max(initial=0.0):
-            break
-        for p in range(count - 1):
-            for q in range(p + 1, count):
-                if a[p, q] == 0.0:
-                    continue
-                ratio = (a[q, q] - a[p, p]) / (2.0 * a[p, q])
-                t = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + sqrt(ratio * ratio + 1.0))
-                c = 1.0 / sqrt(t * t + 1.0)
-                s = t * c
-                for m in (a, a.T, vectors):
-                    first, second = m[:, p].copy(), m[:, q].copy()
-                    m[:, p], m[:, q] = c * first - s * second, s * first + c * second
-    order = np.argsort(np.diag(a), kind="stable")
-    vectors = vectors[:, order]
-    # each vector's largest number is positive
-    for k in range(count):
-        if vectors[int(np.argmax(np.abs(vectors[:, k]))), k] < 0.0:
-            vectors[:, k] = -vectors[:, k]
-    return np.diag(a)[order].copy(), vectors
+    """Eigenvalues, rising, and vectors as columns of a symmetric matrix of finite numbers."""
+    found = _kernel.symmetric_eigen(np.ascontiguousarray(matrix), np.eye(len(matrix)))
+    assert found is not None
+    return found

@@ -141,8 +141,8 @@ class EquilibriumResult(FreeResult):
 
     @property
     def imbalance(self) -> Floats:
-        """The largest force left (rows,), in parts of the largest of one load and of the largest
-        stiffness."""
+        """The largest force left (rows,), in parts of the largest force or stiffness of one
+        load."""
         return self._told(
             [
                 float(np.max(np.abs(one.forces))) / one.largest if one.largest > 0.0 else 0.0

@@ -46,16 +46,19 @@ def balance(
             the place.
         KeyError: an unknown quantity.
     """
-    assert response.search is not None
-    one = prepare(problem, response, packing, session)
-    if response.search.window:
-        from mechkin_cli.statics.window import in_window
-
-        result = in_window(one)
-    else:
-        result = _near(one)
+    result = balanced(prepare(problem, response, packing, session))
     read(result, quantities)
     return result
+
+
+def balanced(one: Prepared) -> EquilibriumResult:
+    """The equilibria of an entry of the file, before anything is read."""
+    assert one.response.search is not None
+    if not one.response.search.window:
+        return _near(one)
+    from mechkin_cli.statics.window import in_window
+
+    return in_window(one)
 
 
 def _near(one: Prepared) -> EquilibriumResult:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.statics.forces import FreePlace, summed
@@ -66,7 +67,9 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
     least, direction = float(values[0]), vectors[:, 0]
     if unsymmetric:
         # above the least real part of the eigenvalues nothing creeps away
-        least = float(np.min(np.linalg.eigvals(matrix).real))
+        creeping = _kernel.eigen(np.ascontiguousarray(matrix))
+        assert creeping is not None
+        least = float(np.min(creeping[0]))
     stability = Stability.MARGINAL
     if least > error:
         stability = Stability.STABLE

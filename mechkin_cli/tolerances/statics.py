@@ -77,9 +77,6 @@ WINDOW_STARTS: Final = 64
 MOST_WINDOW_STARTS: Final = 2048
 """Starts of a search in a window of several freedoms, at most."""
 
-MOST_JACOBI_SWEEPS: Final = 50
-"""Sweeps of Jacobi's rotations: six to ten settle any symmetric matrix."""
-
 MOST_SETTLING_STEPS: Final = 30
 """Steps down to a stable place before Newton's: half a turn takes six."""
 
