@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli import response as response_room, statics, tolerances
 from mechkin_cli.analysis.analysis import Analysis
+from mechkin_cli.analysis.design import Design
 from mechkin_cli.analysis.stream import Stream
 from mechkin_cli.arguments import (
     Setting,
@@ -20,7 +21,6 @@ from mechkin_cli.arguments import (
     shown,
     texts,
 )
-from mechkin_cli.analysis.design import Design
 from mechkin_cli.building import build, is_tiny_length, used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
@@ -69,6 +69,7 @@ def _packing(lanes: object, threads: object) -> Packing:
 
 
 _known_packing = cache(_packing)
+_ANY_PACKING = Packing()
 
 
 def run_name(runs: Sequence[str], name: str | None) -> str:
@@ -117,7 +118,7 @@ def equilibrium_name(problem: Problem, name: str | None) -> str:
     known = [run for run, one in problem.responses.items() if one.search is not None]
     if not known:
         raise UsageError(
-            'the file has no equilibria; add equilibria: {NAME: {near: {...}}}, or ask for one: '
+            "the file has no equilibria; add equilibria: {NAME: {near: {...}}}, or ask for one: "
             'equilibrium(near={"A.theta": 20})'
         )
     if name is None:
@@ -447,7 +448,7 @@ def run_free(
     quantities: Iterable[str] | None = None,
     tables: Sequence[str] | None = None,
     mode: str | None = None,
-    packing: Packing = Packing(),
+    packing: Packing = _ANY_PACKING,
 ) -> Analysis:
     """A response, or equilibria, by name; errors are those of `Model.respond`."""
     design = model.design.at_responses
@@ -463,10 +464,7 @@ def run_free(
     names = wanted_names(session, run, layouts, quantities)
     args = (problem, response, names, packing, session)
     result: Result
-    if response.search is None:
-        result = response_room.respond(*args)
-    else:
-        result = statics.balance(*args)
+    result = response_room.respond(*args) if response.search is None else statics.balance(*args)
     analysis = Analysis(model, layouts, result, run, asked=tuple(names))
     if mode is not None:
         refuse_unknown_mode(analysis.diagnostics)

@@ -30,10 +30,10 @@ from mechkin_cli.building.fields import (
     read_points,
     read_units,
 )
+from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
-from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.motion import build_motion, near_rest, point_guides
 from mechkin_cli.building.play import build_plays, loose_in_sweep, note_tight, with_plays
 from mechkin_cli.building.responses import (
@@ -89,7 +89,7 @@ from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.building.responses import Graphs
+    from mechkin_cli.building.start_graphs import Graphs
     from mechkin_cli.building.view import ViewSettings
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import AnyBalance, ResponseProblem
@@ -168,7 +168,7 @@ def build(
         problem = settled(problem)
     graphs: Graphs = {}
     if problem.responses and graph is not None:
-        from mechkin_cli.building.responses import with_graphs
+        from mechkin_cli.building.start_graphs import with_graphs
 
         problem, graphs = with_graphs(fields, problem)
     errors = [d for d in fields.diagnostics if d.severity == "error"]

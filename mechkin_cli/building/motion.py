@@ -125,7 +125,9 @@ def _swept(
         clock = spaced_moments(fields, path, section.time, per_row, in_parts=True, rows=rows)
     path = ("motion", "inputs")
     motion = build_inputs(fields, path, section.inputs, joints, per_row, clock, grid, rows=rows)
-    return motion if motion is None or not section.rest else _resting(fields, section, motion, joints)
+    return (
+        motion if motion is None or not section.rest else _resting(fields, section, motion, joints)
+    )
 
 
 def _resting(
@@ -148,9 +150,7 @@ def _resting(
         written = orders.copy()
         written[0] = item.written
         inputs.append(
-            item._replace(
-                rates=still, accelerations=still, jerks=still, written_orders=written
-            )
+            item._replace(rates=still, accelerations=still, jerks=still, written_orders=written)
         )
     taken = [(item.joint, item.coordinate) for item in inputs]
     for number, name in enumerate(section.rest):

@@ -57,7 +57,10 @@ def runs_of(file: MechanismFile) -> tuple[str, ...]:
 def unknown_run(fields: Fields, path: Path, name: str, known: Collection[str]) -> None:
     """Notes that the name at `path` is not a run."""
     if name == SWEEP:
-        text, hint = "there is no sweep: the file has no motion:", "name another run, or add motion:"
+        text, hint = (
+            "there is no sweep: the file has no motion:",
+            "name another run, or add motion:",
+        )
     else:
         text = f"there is no run {name}"
         hint = nearest_hint(name, list(known)) or f"runs are {', '.join(known)}"

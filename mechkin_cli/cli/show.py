@@ -201,10 +201,9 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     verdicts = RunVerdicts.of(result)
     worst = dict(verdicts.worst)
     if analysis.run != SWEEP:
-        told = "imbalance" if _rests(analysis) else "energy error"
-        off = np.asarray(result.quantity(f"row.{told.replace(' ', '_')}").value)
+        off = np.asarray(result.quantity(f"row.{result.measure}").value)
         if np.isfinite(off).any():
-            worst[told] = float(off[np.isfinite(off)].max())
+            worst[result.measure.replace("_", " ")] = float(off[np.isfinite(off)].max())
     rows += [("rows", _rows(verdicts)), ("worst", _worst(worst))]
     if analysis.run == SWEEP and result.is_certified:
         rows.append(("proof", analysis.certificate.words))
@@ -299,7 +298,11 @@ def _driven(problem: Problem) -> str:
     """How many freedoms are driven, by which inputs, and Kutzbach's count where it differs."""
     mechanism = problem.mechanism
     count = mechanism.kutzbach
-    inputs = [driven.name for driven in problem.motion.inputs]
+    rest = problem.motion.rest
+    free = () if rest is None else rest.inputs
+    every = problem.motion.inputs
+    inputs = [one.name for number, one in enumerate(every) if number not in free]
+    resting = [every[number].name for number in free]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
     words = [spin.idle_words for spin in mechanism.told_spins]
@@ -308,7 +311,9 @@ def _driven(problem: Problem) -> str:
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
     more = len(words) - IDLE_SHOWN
     idle += f"; and {more} more idle" if more > 0 else ""
-    return (text if count == len(inputs) else f"{text} (Kutzbach's count: {count})") + idle
+    if resting:
+        text += f", at rest: {', '.join(resting)}"
+    return (text if count == len(every) else f"{text} (Kutzbach's count: {count})") + idle
 
 
 def _loops(problem: Problem, graph: SolverGraph) -> str:

@@ -383,7 +383,7 @@ class Model(Listed):
             ...     "loads": [{"type": "gravity", "g": [0, -9.81, 0]}],
             ... })
             >>> r = m.equilibrium(window={"A.theta": (-90, 200)})
-            >>> r["A.theta"].round(6).tolist(), r["row.event"].tolist()
+            >>> abs(r["A.theta"]).round(6).tolist(), r["row.event"].tolist()
             ([0.0, 180.0], ['stable', 'unstable'])
         """
         model = self

@@ -87,6 +87,7 @@ class FreeResult(Result):
     ) -> None:
         super().__init__(session, start, rows)
         self.chosen, self.chart, self.response = chosen, chart, response
+        self.measure = "energy_error" if response.search is None else "imbalance"
 
     @cached_property
     def solved(self) -> Bools:

@@ -330,7 +330,9 @@ def _prepared(chosen: Session, response: ResponseProblem) -> Prepared:
     if not isinstance(begun, Beginning):
         start = replace(start, diagnostics=[*start.diagnostics, begun])
         return Prepared(response, chosen, start, free, None, None)
-    return Prepared(response, chosen, start, free, begun, driven_laws(free, response))
+    # equilibria are looked for at one moment
+    laws = driven_laws(free, response) if response.search is None else None
+    return Prepared(response, chosen, start, free, begun, laws)
 
 
 def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseResult]:

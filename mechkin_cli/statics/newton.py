@@ -19,7 +19,6 @@ from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.response import free_session, with_loads
 from mechkin_cli.session import turn_count
-
 from mechkin_cli.statics.forces import DrivenAt, Forces, ForcesAt, FreePlace, summed
 from mechkin_cli.statics.places import Place, Statics, eigen
 

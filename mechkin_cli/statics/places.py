@@ -24,8 +24,6 @@ from mechkin_cli.statics.forces import combined
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from mechkin_cli.plan import Readout
     from mechkin_cli.session import Ending, Session
     from mechkin_cli.show import Bools, Floats

@@ -31,7 +31,7 @@ from mechkin_cli.verdict import Status
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Rest
     from mechkin_cli.session import Precise, Session
-    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.show import Floats
 
 
 @remembered
@@ -401,8 +401,8 @@ class _Arc:
                 return None
             forces, slopes = found
             matrix = np.concatenate([slopes, last[None, :]])
-            off = float(summed(last * (y - predicted)))
-            solved = eliminated(matrix.tolist(), [*(-forces).tolist(), -off], 0.0)
+            beyond = float(summed(last * (y - predicted)))
+            solved = eliminated(matrix.tolist(), [*(-forces).tolist(), -beyond], 0.0)
             if solved is None:
                 return None
             by = np.array(solved)

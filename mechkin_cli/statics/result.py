@@ -10,7 +10,6 @@ import numpy as np
 
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism import (
-    DRIVEN_KINDS,
     DrivenInput,
     Moments,
     MotionInputs,
@@ -164,10 +163,13 @@ def _rows(response: ResponseProblem, count: int) -> MotionInputs:
     """The driven coordinates and the moment, the same in each row."""
 
     def repeated(item: DrivenInput) -> DrivenInput:
-        columns = (item.values, item.rates, item.accelerations, item.jerks)
-        value, *others = (np.repeat(column[:1], count) for column in columns)
-        written = np.repeat(item.written_orders[:, :1], count, axis=1)
-        return DrivenInput(item.joint, item.coordinate, value, *others, written)
+        return item.part(slice(0, 1))._replace(
+            values=np.repeat(item.values[:1], count),
+            rates=np.zeros(count),
+            accelerations=np.zeros(count),
+            jerks=np.zeros(count),
+            written_orders=np.repeat(item.written_orders[:, :1], count, axis=1),
+        )
 
     moments = response.moments
     time = Moments(np.repeat(moments.values, count), np.repeat(moments.written, count))

@@ -101,7 +101,8 @@ def _in_coordinates(matrix: Floats, rates: Floats) -> Floats | None:
     product = np.array(
         [[float(summed(a * summed(matrix.T * b[:, None]))) for b in columns] for a in columns]
     )
-    return 0.5 * (product + product.T)
+    symmetric: Floats = 0.5 * (product + product.T)
+    return symmetric
 
 
 def _is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -> bool:
@@ -109,7 +110,7 @@ def _is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -
     forces = balancing.forces
     reach = tolerances.INDIFFERENT_REACH * np.array([-1.0, -0.5, 0.5, 1.0])
     beside = forces.at(place, direction[:, None] * reach)
-    for number, by in enumerate(reach):
+    for number in range(reach.size):
         if not beside.good[number]:
             return False
         again = search(balancing, forces.moved(place, beside, number))

@@ -18,6 +18,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism import Limit
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.search import all_assemblies, pose_number
@@ -201,7 +202,7 @@ class _Curve:
     def _look_along(self, one: _Stretch) -> None:
         """Zeros of the force along a stretch."""
         forces, values = one.forces, one.values
-        zero = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * max(self.largest, 1e-300)
+        zero = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * self.largest
         if self._is_indifferent(one, zero):
             return
         for k in range(forces.size - 1):
@@ -394,12 +395,14 @@ def _from_starts(
         starts += 1
         if starts >= least and since >= ended // 2:
             break
-    chance = 1.0 - tolerances.SEARCH_DOUBT ** (1.0 / max(since, 1))
+    # as of assemblies: each of the known ones could have been the last that was missing
+    pairs = max(len(known.found) * (len(known.found) + 1), 1)
+    chance = min(1.0, float(functions.log(pairs / tolerances.SEARCH_DOUBT)) / max(since, 1))
     count = len(known.found)
     text = (
         f"{count} equilibri{'um' if count == 1 else 'a'} found from {starts} starts; with "
-        f"{100.0 * (1.0 - tolerances.SEARCH_DOUBT):g} % confidence one more search that ends at one "
-        f"finds another with a chance of at most {chance:.1g}"
+        f"{100.0 * (1.0 - tolerances.SEARCH_DOUBT):g} % confidence one more search that ends at "
+        f"one finds another with a chance of at most {chance:.1g}"
     )
     at = f"{ended} searches ended at an equilibrium, the last {since} of them at known ones"
     hint = "ask for more starts: starts: 1000"
@@ -409,7 +412,8 @@ def _from_starts(
 def _spread(number: int, count: int) -> Floats:
     """A point of the unit cube (count,) that spreads evenly with its number: multiples of powers of
     the root of x^(count+1) = x + 1 (M. Roberts, 2018), which is the golden ratio for one."""
-    root = 1.5
-    for _ in range(64):
-        root = (1.0 + root) ** (1.0 / (count + 1))
-    return np.array([(0.5 + (number + 1) * root ** -(k + 1)) % 1.0 for k in range(count)])
+    root, powers = 2.0, [1.0]
+    for _ in range(64):  # by Newton
+        powers = np.multiply.accumulate([1.0, *[root] * (count + 1)]).tolist()
+        root -= (powers[-1] - root - 1.0) / ((count + 1) * powers[-2] - 1.0)
+    return np.array([(0.5 + (number + 1) / powers[k + 1]) % 1.0 for k in range(count)])

@@ -434,7 +434,9 @@ class _ResponseRun:
             for number in range(begin, min(begin + CHUNK, count)):
                 self._prepare(number, values[:, number], models)
             prepared = [one for _, one in models.values()]
-            results: Sequence[FreeResult] = [balanced(one) for one in prepared if one.response.search]
+            results: Sequence[FreeResult] = [
+                balanced(one) for one in prepared if one.response.search
+            ]
             if not results:
                 results = integrated(prepared, self.packing)
             for number, result in zip(models, results, strict=True):
