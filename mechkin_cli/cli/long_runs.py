@@ -85,7 +85,7 @@ def _refuse_responses(model: Model, command: AnalyzeCommand) -> None:
     found = [run for run in own if run in wanted]
     if found or SWEEP not in model.runs:
         raise UsageError(
-            f"--summary-only sums up sweeps, and {', '.join(found or own)} is a response; choose "
+            f"--summary-only sums up sweeps, and {', '.join(found or own)} is none; choose "
             "tables of the sweep with --table"
         )
 

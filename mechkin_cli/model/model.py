@@ -12,8 +12,11 @@ from mechkin_cli import cams, fit, live, mobility, modes, sensitivities, studies
 from mechkin_cli.analysis import (
     Analysis,
     Design,
+    asking,
+    equilibrium,
     input_values,
     respond,
+    run_free,
     run_name,
     run_sweep,
     stream_sweep,
@@ -86,7 +89,8 @@ class Parameters(Listed, Mapping[str, float]):
 class Model(Listed):
     """A checked mechanism file, as `mk.load` and `mk.loads` return it.
 
-    `analyze` runs its sweep, `respond` its responses; `modes`, `ranges` and `mobility` tell how it
+    `analyze` runs its sweep, `respond` its responses, and `equilibrium` finds where its loads
+    balance; `modes`, `ranges` and `mobility` tell how it
     can be assembled and moved. Values are in the file's units throughout.
 
     Attributes:
@@ -140,7 +144,8 @@ class Model(Listed):
 
     @property
     def runs(self) -> tuple[str, ...]:
-        """The file's runs by name: `sweep`, unless it has responses alone, then its responses."""
+        """The file's runs by name: `sweep`, unless it has others alone, then its responses and its
+        equilibria."""
         return self.built.runs
 
     @property
@@ -334,11 +339,77 @@ class Model(Listed):
             self, name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
         )
 
+    def equilibrium(
+        self,
+        name: str | None = None,
+        quantities: Iterable[str] | None = None,
+        *,
+        near: Mapping[str, Setting] | None = None,
+        window: Mapping[str, tuple[Setting, Setting]] | None = None,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Analysis:
+        """Places at which all loads balance: those of the file's `equilibria:`, or others.
+
+        Args:
+            name: of the file's equilibria; None: the only ones.
+            quantities: names to compute beside what its tables read.
+            near: instead of the file's, one equilibrium from a start: as many independent
+                coordinates as are free, in the file's units or such as "0.5 rad".
+            window: instead of the file's, all equilibria within the least and the largest values
+                of such coordinates, in every assembly mode.
+            tables: names of its tables that are wanted; None: all, [] none.
+            mode: assembly mode at the start instead of the file's choice.
+            lanes: width of the kernel's packs, 0 for the widest (no answer depends on it).
+            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+
+        Returns:
+            As `analyze`, with a row for each equilibrium, at which nothing moves; `row.event` says
+            whether it is stable. Where none was found there is one row without a place.
+
+        Raises:
+            InvalidFile: too few coordinates are named, or too many.
+            UsageError: unknown equilibria, tables, quantities or modes, or invalid values.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> pin = {"type": "R", "links": ["ground", "bob"], "point": [0, 0, 0]}
+            >>> m = load({
+            ...     "format": 1,
+            ...     "links": {"bob": {"mass": 2, "center_of_mass": [0, -0.25, 0]}},
+            ...     "joints": {"A": {**pin, "axis": [0, 0, 1]}},
+            ...     "loads": [{"type": "gravity", "g": [0, -9.81, 0]}],
+            ... })
+            >>> r = m.equilibrium(window={"A.theta": (-90, 200)})
+            >>> abs(r["A.theta"]).round(6).tolist(), r["row.event"].tolist()
+            ([0.0, 180.0], ['stable', 'unstable'])
+        """
+        model = self
+        if near is not None or window is not None:
+            name, design = asking(self.design, near, window)
+            model = self.of(design)
+        return equilibrium(
+            model, name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
+        )
+
+    def run_free(
+        self, name: str, *, tables: Sequence[str] | None = None, mode: str | None = None
+    ) -> Analysis:
+        """A response or equilibria by name: what `respond` and `equilibrium` give.
+
+        Raises:
+            InvalidFile: too few coordinates are named, or too many.
+            UsageError: an unknown run, table or mode.
+        """
+        return run_free(self, name, tables=tables, mode=mode)
+
     def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
         """All runs of the file, or one.
 
         Args:
-            run: `sweep`, or a response; None: all.
+            run: `sweep`, or the name of another; None: all.
             mode: assembly mode at the first row instead of the file's choice: its letter, or
                 home for the one drawn.
 
@@ -348,7 +419,7 @@ class Model(Listed):
         """
         runs = self.runs if run is None else (run_name(self.runs, run),)
         return [
-            self.analyze(mode=mode) if name == SWEEP else self.respond(name, mode=mode)
+            self.analyze(mode=mode) if name == SWEEP else self.run_free(name, mode=mode)
             for name in runs
         ]
 

@@ -169,6 +169,7 @@ BY_KEY: Final[dict[str, Any]] = {
     "equations": ["crank", "rocker", "-O1"],
     "follow": ["O1"],
     "follower": {"type": "translating", "contact": "flat", "base_radius": "40 mm"},
+    "equilibria": {"ride": {"near": {"A.theta": 20}}},
     "force": [0, 0, "-10 N"],
     "groove": [1, 0, 0],
     "hidden": ["frame"],
@@ -198,12 +199,14 @@ BY_KEY: Final[dict[str, Any]] = {
     "remarks": [{"text": "The source rounds to six digits."}],
     "responses": {"fall": {"start": {"A.theta": 80}, "time": {"from": 0, "to": 3, "step": 0.1}}},
     "radii": ["20 mm", "40 mm"],
+    "rest": ["B.s"],
     "rows_by": "theta",
     "runs": ["sweep", "fall"],
     "shapes": {"coupler": "plate"},
     "slot": [0, 0, 1],
     "source": "A textbook, page 12",
     "start": {"A.theta": "80 deg", "A.theta_dot": "0 rad/s"},
+    "starts": 200,
     "stop": [{"turns": "A.theta", "count": 3}],
     "summary": ["max", "min", "rms"],
     "sum": "10 deg",
@@ -219,6 +222,7 @@ BY_KEY: Final[dict[str, Any]] = {
     "values": [0, 15, "40 deg"],
     "vector": [1, 0, 0],
     "view": {"hidden": ["frame"]},
+    "window": {"A.theta": {"from": -180, "to": 180}},
     "x": [1, 0, 0],
     "y": [0, 1, 0],
     "zero": {"ground": [1, 0, 0], "crank": [0, 1, 0]},
@@ -227,6 +231,8 @@ BY_KEY: Final[dict[str, Any]] = {
 BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
+    ("Equilibrium", "time"): "2 s",
+    ("Equilibrium", "driven"): {"A.theta": {"at": "30 deg"}},
     ("Column", "value"): "norm(O1.force)",
     ("Cylinder", "bore"): "50 mm",
     ("Cylinder", "from"): "P",
@@ -477,7 +483,8 @@ def _file(form: type[AnyFile], definitions: Schema) -> Schema:
         reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
         schema["properties"][name]["propertyNames"] = reserved
     barred = {"not": {"pattern": TAKEN_FOR_EDITORS}}
-    schema["properties"]["responses"]["propertyNames"] = barred
+    for name in ("responses", "equilibria"):
+        schema["properties"][name]["propertyNames"] = barred
     return schema
 
 
