@@ -431,6 +431,8 @@ class Plan:
         constraint_rates: Floats | None = None,
         turned: Floats | None = None,
         chart: Floats | None = None,
+        chart_origin: Floats | None = None,
+        chart_place: Floats | None = None,
         chart_rates: Floats | None = None,
         chart_accelerations: Floats | None = None,
         friction_told: Floats | None = None,
@@ -449,6 +451,8 @@ class Plan:
         power_error: Floats | None = None,
         flags: NDArray[np.uint8],
         loads: Floats | None = None,
+        chart_forces: Floats | None = None,
+        turn: Floats | None = None,
         undefined: NDArray[np.uint8] | None = None,
         demand: int = 0,
         shift: int = 0,
@@ -677,6 +681,14 @@ class Stepper:
 
 MOST_PATH_STEPS: int
 """Steps of one path at most."""
+
+def symmetric_eigen(a: Floats, b: Floats) -> tuple[Floats, Floats] | None:
+    """Values (n,), rising, and vectors (n, n) as columns of A x = lambda B x with symmetric (n, n)
+    matrices, x^T B x = 1; None where B is not positive definite or a number is not finite."""
+
+def eigen(a: Floats) -> tuple[Floats, Floats, Floats, Floats] | None:
+    """Real and imaginary parts of the values (n,) of a real matrix (n, n), by rising size, and of
+    the vectors (n, n) as columns of unit length; None where a number is not finite."""
 
 def closing_turns(plan: Plan) -> list[tuple[int, int, int, int]]:
     """(closing joint, freedom, first slot, slots) of the turns that following carries along.

@@ -31,9 +31,9 @@ __getattr__, __dir__ = lazy_names(
         "following": "Ending Followed Runaway follow step_limits step_numbers",
         "inputs": "KernelInputs ORIENTATION continuous_angle continuous_signs drawn_quaternion "
         "held_values input_number input_numbers input_text input_unit kernel_inputs "
-        "quaternion_product reduce_angle round_of turn_count turn_of turned_quaternion",
+        "quaternion_product reduce_angle round_of turn_of turned_quaternion",
         "kernel_run": "Ask Batch Chart POSITIONS PreciseConstants RESIDUAL_TESTS RowInputs "
-        "assembly_size run",
+        "assembly_size run turn_count",
         "path": "places_at places_of",
         "redundancy": "equations_that_follow",
         "session": "Between Continued Exchanged Packing Session exchange find_limit lies_in_family "

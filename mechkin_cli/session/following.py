@@ -15,7 +15,7 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel._kernel import StepLimits
 from mechkin_cli.plan import Layout, PassageEnd, TrackEnd
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.session.inputs import turn_count
+from mechkin_cli.session.kernel_run import turn_count
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan

@@ -291,11 +291,6 @@ def tree_slots(plan: Plan) -> dict[int, int]:
     return dict(_kernel.tree_turns(plan))
 
 
-def turn_count(plan: Plan) -> int:
-    """Number of rows of `Followed.turns`."""
-    return sum(width for *_, width in _kernel.closing_turns(plan)) + len(_kernel.tree_turns(plan))
-
-
 def continuous_angle(values: Floats, followed: Floats) -> Floats:
     """An angle with the whole turns that following says.
 

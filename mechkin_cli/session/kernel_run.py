@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.plan import Demand, RowFlag
 from mechkin_cli.record import NamedTuple
@@ -84,6 +85,8 @@ class RowInputs(NamedTuple):
         full: (inputs, rows) the inputs with their whole turns, which laws of loads read.
         time: (rows,) s, likewise.
         chart: of a plan with one.
+        origin: (states, rows) that the chart is about, where that is not the guess; in doubles.
+        place: (charts, rows) its coordinates there; None: zero.
     """
 
     inputs: Floats
@@ -97,6 +100,8 @@ class RowInputs(NamedTuple):
     full: Floats | None = None
     time: Floats | None = None
     chart: Chart | None = None
+    origin: Floats | None = None
+    place: Floats | None = None
 
     def at(self, rows: NDArray[np.intp] | Sequence[int]) -> RowInputs:
         """Some of the rows, in this order."""
@@ -119,6 +124,8 @@ class Ask(NamedTuple):
         tests: residual tests (tight, coarse, accept); None: those of the numbers.
         only: the one block that is closed; the unknowns of the others stay as guessed and their
             loops are not looked at. For positions and the condition alone, in doubles.
+        balance: return what would have to act along a chart, with forces, and the turns of cut
+            joints, with accelerations; in double-double the former is always returned.
     """
 
     demand: Demand = Demand.POSITION
@@ -128,6 +135,7 @@ class Ask(NamedTuple):
     iterations: int = tolerances.NEWTON_ITERATIONS
     tests: tuple[float, float, float] | None = None
     only: int | None = None
+    balance: bool = False
 
 
 POSITIONS = Ask()
@@ -150,12 +158,14 @@ class Batch(NamedTuple):
     guess; `side` (blocks, rows) are the signs of the square blocks' determinants where more than
     positions was demanded; `flags` (rows,) are `RowFlag`s; `loads` (values, rows) are those of
     loads that vary, in the kernel's units, and `undefined` (rows,) tells rows in which one has
-    none; what was not asked for is None.
+    none; `chart_forces` (charts, rows), in kernel units, are what would have to act along a chart's
+    coordinates for its accelerations: M u'' + r in docs/numerics.md, zero along a free motion;
+    `turns` (turn slots, rows) are angles within a turn and orientations of cut joints, of either
+    sign; what was not asked for is None.
 
-    In double-double there is no `condition` and no `side`; a row that Newton could not bring to the
-    rounding of double-double is not converged, and its numbers are as good as its residual; and
-    `chart_forces` (charts, 2, rows), in kernel units, are what would have to act along a chart's
-    coordinates for its accelerations: M u'' + r in docs/numerics.md, zero along a free motion.
+    In double-double there is no `condition`, no `side` and no `turns`; a row that Newton could not
+    bring to the rounding of double-double is not converged, and its numbers are as good as its
+    residual.
     """
 
     states: Floats
@@ -171,6 +181,7 @@ class Batch(NamedTuple):
     loads: Floats | None = None
     undefined: NDArray[np.uint8] | None = None
     chart_forces: Floats | None = None
+    turns: Floats | None = None
 
     @property
     def good(self) -> NDArray[np.bool_]:
@@ -200,11 +211,13 @@ def run(
     Raises:
         ValueError: shapes, codes or numbers that do not fit the plan or each other.
     """
-    inputs, guess, rates, accelerations, jerks, transmitted, turned, whole, full, time, chart = rows
+    inputs, guess, rates, accelerations, jerks, transmitted = rows[:6]
+    turned, whole, full, time, chart, origin, place = rows[6:]
     count = inputs.shape[-1]
     demand = int(ask.demand)  # flags of an enumeration are slow, and short calls are many
     outputs = None if ask.readout is None else ask.readout.outputs
     call: Callable[..., None] = plan.run
+    turns: Floats | None = None
     if constants is None:
         given, tests = _contiguous, RESIDUAL_TESTS
         shape: tuple[int, ...] = (count,)
@@ -213,9 +226,20 @@ def run(
         blocks = (plan.blocks, count)
         side: Floats | None = np.empty(blocks) if told else np.ones(blocks)
         condition = np.empty(count) if demand & _CONDITION else None
-        chart_forces = None
+        chart_forces: Floats | None = None
         if ask.only is not None:
             call = partial(call, only=ask.only)
+        elif ask.balance or origin is not None:
+            chart_forces = np.empty((plan.charts, count)) if ask.balance else None
+            if ask.balance:
+                turns = np.empty((turn_count(plan), count))
+            call = partial(
+                call,
+                chart_origin=given(origin),
+                chart_place=given(place),
+                chart_forces=chart_forces,
+                turn=turns,
+            )
     else:
         given, tests = _in_parts, PRECISE_TESTS
         shape = (2, count)
@@ -282,8 +306,13 @@ def run(
         threads=threads_for(count, threads),
     )
     measured = (residual, correction, side, condition, power_error)
-    acting = (loads, undefined, chart_forces)
+    acting = (loads, undefined, chart_forces, turns)
     return Batch(states, values, first, second, *measured, flags, *acting)
+
+
+def turn_count(plan: Plan) -> int:
+    """Number of rows of `Followed.turns`."""
+    return sum(width for *_, width in _kernel.closing_turns(plan)) + len(_kernel.tree_turns(plan))
 
 
 def assembly_size(plan: Plan, inputs: Floats, state: Floats) -> float:

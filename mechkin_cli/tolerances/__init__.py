@@ -34,3 +34,4 @@ from mechkin_cli.tolerances.closing import *
 from mechkin_cli.tolerances.mobility import *
 from mechkin_cli.tolerances.reading import *
 from mechkin_cli.tolerances.results import *
+from mechkin_cli.tolerances.statics import *

@@ -29,6 +29,7 @@ ROOMS = {
     "modes",
     "derived",
     "balances",
+    "statics",
     "proofs",
     "sweep",
     "response",

@@ -52,6 +52,8 @@ ORDER = [
     "building",
     "sweep",
     "response",
+    "statics",
+    "vibration",
     "balances",
     "errors",
     "cams",

@@ -16,6 +16,8 @@ void bind_response(nanobind::module_& m);
 void bind_certify(nanobind::module_& m);
 // Enclosures of what rows write; needs the class Plan bound before.
 void bind_enclosing(nanobind::module_& m);
+// Eigenvalues of small matrices.
+void bind_eigenvalues(nanobind::module_& m);
 // PlanBuilder, Plan, Outputs.
 void bind_plan(nanobind::module_& m);
 // Numbers and tables as text.

@@ -86,6 +86,7 @@ NB_MODULE(_kernel, m) {
   bind_plan(m);
   bind_tape(m);
   bind_course(m);
+  bind_eigenvalues(m);
   bind_stepper(m);
   bind_variants(m);
   bind_positions(m);

@@ -80,8 +80,13 @@ void run_plan(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const OutputList* const outputs = read_request(given, plan, r);
   const int only = (int)given.integer("only", 0, p.blocks - 1, -1);
   const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));
+  const int slots = turn_slots(p, unit);
+  r.turn = given.write("turn", slots);
+  r.chart_origin = given.read("chart_origin", p.states);
+  r.chart_place = given.read("chart_place", p.charts);
   const int threads = (int)given.integer("threads", 1, MOST_THREADS, 1);
   given.finish();
+  if (r.turn && !(r.demand & DEMAND_ACCELERATION)) throw nb::value_error("turn: told with accelerations");
   if (only >= 0 && (r.demand & ~DEMAND_CONDITION || r.outputs))
     throw nb::value_error("one block alone has its closing and its condition");
   if (r.rows == 0) return;
@@ -90,6 +95,15 @@ void run_plan(const FrozenPlan& plan, const nb::kwargs& keywords) {
   Held others = {};
   others.use = use.data();
   if (only >= 0) use[(std::size_t)only] = BLOCK_SOLVED, r.held = &others;
+  std::vector<ClosingTurn> turns;
+  std::vector<double> moving;
+  if (r.turn) {
+    turns = closing_turns(p, unit);
+    r.turns = turns.data(), r.turn_count = (int)turns.size();
+    moving.resize((std::size_t)(2 * slots * r.rows));
+    r.turn_first = moving.data(), r.turn_second = moving.data() + slots * r.rows;
+    std::fill(r.turn, r.turn + slots * r.rows, 0.0);  // the states of the tree have their turns
+  }
   nb::gil_scoped_release released;
   run_rows(p, r, unit, threads);
 }

@@ -12,7 +12,6 @@ void run_precise(const FrozenPlan& plan, const nb::kwargs& keywords) {
   Arguments given(keywords, 2);
   Request r = {};
   const OutputList* const outputs = read_request(given, plan, r);
-  r.chart_forces = given.write("chart_forces", plan.view().charts);
   const double* const low = given.numbers("low", plan.constants());
   const double* const low_outputs = given.numbers("low_outputs", outputs ? outputs->constants() : 0);
   const DoubleDoubleUnit& unit = double_double_unit((int)given.integer("lanes", 0, 8, 0));

@@ -40,6 +40,7 @@ const OutputList* read_request(Arguments& given, const FrozenPlan& plan, Request
   r.power_error = given.write("power_error", Arguments::ONE_PER_ROW);
   r.flags = given.write_flags_required("flags");
   r.loads = given.write("loads", p.load_values);
+  r.chart_forces = given.write("chart_forces", p.charts);
   r.undefined = given.write_flags("undefined");
   r.rows = given.rows();
   r.demand = (unsigned)given.integer("demand", 0, DEMAND_EVERYTHING, 0);

@@ -236,7 +236,7 @@ struct RowPack {
     Balance balance = balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, rate_by_leader);
     if (wants_level) balance.level = reaction_level(p, w);
     // the chart stands in the one block, behind its closing equations
-    if (PARTS > 1 && r.chart_forces)
+    if (r.chart_forces)
       for (int i = 0; i < p.charts; ++i)
         writer(r.chart_forces).put(i, w.multiplier[p.block[0].rows - p.charts + i]);
     const auto actuators = [&](Powers& powers) { add_actuator_power(powers, p, w); };
