@@ -27,6 +27,7 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, Chart, RowInputs, continuous_angle
 
 if TYPE_CHECKING:
+    from mechkin_cli.plan import Readout
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
 
@@ -161,6 +162,20 @@ class Forces:
             good &= batch.undefined == 0
         return ForcesAt(batch.chart_forces, batch.states, self._turned(place, batch), good)
 
+    def read(self, place: FreePlace, readout: Readout) -> Floats:
+        """Outputs (slots, freedoms) at a place, where one direction of its chart after the other
+        has unit rate and the driven inputs are at rest."""
+        n = self.freedoms
+        zeros = np.zeros((n, n))
+        still = self.driven._replace(rates=np.zeros_like(self.driven.rates))
+        batch = self._run(still, place, zeros, np.eye(n), zeros, readout)
+        assert batch.outputs is not None
+        return batch.outputs
+
+    def continuous(self, values: Floats, place: FreePlace, slot: int) -> Floats:
+        """Values of a cut joint's angle with the whole turns that a place has in a slot."""
+        return continuous_angle(values, np.full(values.shape, place.turns[slot]))
+
     def moved(self, place: FreePlace, at: ForcesAt, number: int = 0) -> FreePlace:
         """The place that is one of those of `at` about another."""
         return self.place(at.states[:, number], at.turns[:, number], place.tangents)
@@ -186,7 +201,13 @@ class Forces:
         )
 
     def _run(
-        self, driven: DrivenAt, place: FreePlace, u: Floats, rates: Floats, seconds: Floats
+        self,
+        driven: DrivenAt,
+        place: FreePlace,
+        u: Floats,
+        rates: Floats,
+        seconds: Floats,
+        readout: Readout | None = None,
     ) -> Batch:
         """Closes places of the chart with a motion along it, and balances the forces."""
         count, session = u.shape[1], self.session
@@ -215,7 +236,7 @@ class Forces:
             state,
             u,
         )
-        return session.run(rows, Ask(_BALANCED, derivatives=True, balance=True))
+        return session.run(rows, Ask(_BALANCED, readout, derivatives=True, balance=True))
 
     def _turned(self, place: FreePlace, batch: Batch) -> Floats:
         """The turns (turn slots, places) of places, continuous from those of another."""

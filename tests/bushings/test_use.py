@@ -231,4 +231,4 @@ def test_variants_and_recorded_numbers() -> None:
 def test_unstable_matrices_are_found_where_parameters_make_them() -> None:
     model = mk.loads(MOUNTED.replace("x: 2*k", "x: k - 50 N/mm"))
     with pytest.raises(InvalidFile, match="stiffness along x is negative"):
-        model.with_parameters({"k": "40 N/mm"})
+        model.with_parameters({"k": "40 N/mm"}).analyze()
