@@ -77,6 +77,7 @@ FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
     ("response/integration.py", "np.linalg"): "eigenvectors for a message",
     ("building/joints.py", "np.linalg"): "eigenvalues for a warning",
+    ("building/bushings.py", "np.linalg"): "an eigenvalue for a message",
     (
         "building/spacing.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",

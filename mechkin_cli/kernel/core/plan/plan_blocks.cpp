@@ -254,6 +254,7 @@ Plan PlanBuilder::arrays() const {
   p.blocks = (int)block_.size();
   p.inputs = (int)input_column_.size();
   p.loads = (int)load_.size();
+  p.bushings = (int)bushing_.size();
   p.driven = driven_set_ ? plan_.driven : p.inputs;
   p.actuators = (int)actuator_.size();
   p.input_constraints = (int)input_constraint_.size();
@@ -279,7 +280,7 @@ Plan PlanBuilder::arrays() const {
   p.column_state = column_state_.data(), p.column_joint = column_joint_.data();
   p.column_block = column_block_.data(), p.column_place = column_place_.data();
   p.column_weight = column_weight_.data();
-  p.inertia = inertia_.data(), p.load = load_.data(), p.size_point = size_point_.data();
+  p.inertia = inertia_.data(), p.load = load_.data(), p.bushing = bushing_.data(), p.size_point = size_point_.data();
   p.actuator = actuator_.data(), p.input_constraint = input_constraint_.data();
   p.law = program_.view();
   p.functions = functions_.view(), p.function_knot = functions_.knots().data();
