@@ -8,6 +8,7 @@ goes as far as the forces become smaller, and as the places along it lie on one 
 from __future__ import annotations
 
 from enum import Enum
+from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -39,8 +40,8 @@ class SearchEnd(Enum):
 
 
 class Search(NamedTuple):
-    """The last place of a search, the forces there (freedoms,), the largest force or slope of one
-    load (`Balancing.largest`), and why it ended; forces in kernel units."""
+    """The last place of a search, the forces there (freedoms,), the largest force or slope that is
+    known of one load or of all, and why it ended; forces in kernel units."""
 
     place: FreePlace
     forces: Floats
@@ -62,13 +63,11 @@ class Balancing:
         chosen: the session of one row, among whose inputs are the coordinates that are free.
         coordinates: these (joint, coordinate), which fix a place.
         forces: of what is free.
-        alone: of each load alone, and of all weights.
     """
 
     chosen: Session
     coordinates: list[Coordinate]
     forces: Forces
-    alone: tuple[Forces, ...]
 
     @classmethod
     def of(cls, chosen: Session, coordinates: list[Coordinate]) -> Balancing:
@@ -80,9 +79,13 @@ class Balancing:
         motion = motion._replace(inputs=driven, leader=None, rest=None)
         free = free_session(chosen, coordinates)
         free = replace(free.moved(problem.moved(motion)), packing=chosen.packing)
-        at = DrivenAt.row(free)
-        alone = tuple(Forces(one, at) for one in _alone(free))
-        return cls(chosen, coordinates, Forces(free, at), alone)
+        return cls(chosen, coordinates, Forces(free, DrivenAt.row(free)))
+
+    @cached_property
+    def alone(self) -> tuple[Forces, ...]:
+        """The forces of each load alone, and of all weights."""
+        driven = self.forces.driven
+        return tuple(Forces(one, driven) for one in _alone(self.forces.session))
 
     def largest(self, place: FreePlace) -> float:
         """The largest force of one load alone, or of all weights, and the largest slope of one, for
@@ -186,16 +189,14 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
     while True:
         found = slopes(balancing.forces, place)
         if found is None:
-            return Search(place, forces, largest, SearchEnd.NO_FORCES, steps)
+            return Search(place, forces, 0.0, SearchEnd.NO_FORCES, steps)
         forces, matrix = found
         size, slope = float(np.max(np.abs(forces))), float(np.max(np.abs(matrix)))
-        if length <= tolerances.EQUILIBRIUM_STEP or size <= (
-            tolerances.EQUILIBRIUM_ROUNDING * max(largest, slope)
-        ):
-            largest = max(balancing.largest(place), slope)
-            return Search(place, forces, largest, SearchEnd.FOUND, steps)
+        near = length <= tolerances.EQUILIBRIUM_STEP
+        if near or size <= tolerances.EQUILIBRIUM_ROUNDING * max(largest, slope):
+            return Search(place, forces, slope, SearchEnd.FOUND, steps)
         if steps == tolerances.MOST_EQUILIBRIUM_STEPS:
-            return Search(place, forces, max(largest, slope), SearchEnd.STEPS, steps)
+            return Search(place, forces, slope, SearchEnd.STEPS, steps)
         wanted = newton_step(matrix, forces)
         length = _length(wanted)
         if tolerances.EQUILIBRIUM_REACH < length <= tolerances.WILD_STEP:
@@ -218,7 +219,7 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
         place = moved
         slide = float(np.max(np.abs(balancing.named(place)[0]))) if steps % 8 == 0 else 0.0
         if slide > tolerances.FAR_EQUILIBRIUM:
-            return Search(place, forces, largest, SearchEnd.RUNAWAY, steps)
+            return Search(place, forces, slope, SearchEnd.RUNAWAY, steps)
 
 
 def _length(step: Floats) -> float:

@@ -140,13 +140,16 @@ class _Branch:
             rows = at + step * np.arange(1, min(block, left) + 1)
             found = self._stretch(place, rows, known, matrix)
             if found is not None:
-                place, matrix = found
+                place, matrix, chords = found
                 known += rows.tolist()
-                block = min(2 * block, tolerances.MOST_REST_ROWS)
                 self.unstable[rows] = _least(matrix) < 0.0
+                if chords <= tolerances.FEW_CHORDS:
+                    block = min(block + max(block // 2, 1), tolerances.MOST_REST_ROWS)
+                elif chords > tolerances.MANY_CHORDS:
+                    block = max(block - block // 4, 1)
                 continue
             if block > 1:
-                block = max(block // 4, 1)
+                block //= 2
                 continue
             onward, end = _Arc(self, place, at, at + step).follow()
             if onward is None:
@@ -203,9 +206,10 @@ class _Branch:
 
     def _stretch(
         self, place: Place, rows: Floats, known: list[int], matrix: Floats
-    ) -> tuple[Place, Floats] | None:
+    ) -> tuple[Place, Floats, int] | None:
         """Corrects the predicted equilibria of some rows beyond a place, all at once; the last
-        place and the stiffness there, or None where they are not surely those of the branch."""
+        place, the stiffness there and the number of corrections, or None where they are not surely
+        those of the branch."""
         inputs = self.values[:, rows].copy()
         inputs[self.free] = self._predicted(known, rows)
         way = self.statics.way(np.concatenate([place.inputs[:, None], inputs], axis=1), place)
@@ -219,11 +223,19 @@ class _Branch:
         part = np.arange(1, rows.size + 1) / rows.size
         slopes = matrix[:, :, None] * (1.0 - part) + far[:, :, None] * part
         predicted = inputs[self.free].copy()
-        before = np.inf
-        for _ in range(tolerances.MOST_CHORDS):
+        before, step = np.inf, None
+        chords = 0
+        while chords < tolerances.MOST_CHORDS:
+            chords += 1
             found = self.statics.forces(inputs, states, turns, times)
             if not found.good.all():
                 return None
+            if step is not None:
+                # what the last step left tells of the slopes (C. G. Broyden, Mathematics of
+                # Computation 19, 1965)
+                size = summed(step * step)
+                by = np.where(size > 0.0, step / np.where(size > 0.0, size, 1.0), 0.0)
+                slopes = slopes + found.forces[:, None, :] * by[None, :, :]
             step = _solved(slopes, -found.forces)
             if step is None:
                 return None
@@ -234,8 +246,7 @@ class _Branch:
                     return None
                 break
             inputs[self.free] += step
-            states = found.states
-            before = size
+            states, before = found.states, size
             if size <= tolerances.EQUILIBRIUM_STEP:
                 break
         moved = np.abs(inputs[self.free] - place.inputs[self.free][:, None]).max()
@@ -246,7 +257,7 @@ class _Branch:
             return None
         self.values[:, rows] = inputs
         # the states are those before the last step, of the size of rounding
-        return Place(inputs[:, -1], states[:, -1], turns[:, -1]), far
+        return Place(inputs[:, -1], states[:, -1], turns[:, -1]), far, chords
 
     def _notes(self, first: int, last: int) -> tuple[Diagnostic, ...]:
         """Which rows are unstable equilibria."""

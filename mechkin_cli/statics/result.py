@@ -144,8 +144,8 @@ class EquilibriumResult(FreeResult):
         load."""
         return self._told(
             [
-                float(np.max(np.abs(one.forces))) / one.largest if one.largest > 0.0 else 0.0
-                for one, _ in self.found
+                float(np.max(np.abs(one.forces))) / verdict.size if verdict.size > 0.0 else 0.0
+                for one, verdict in self.found
             ]
         )
 

@@ -40,13 +40,15 @@ class Verdict(NamedTuple):
     """Of one equilibrium: its stability, the independent coordinates (freedoms,) there in kernel
     units, the least stiffness by them (N*m by kernel units; nan where they do not move one by one)
     and the coordinate that has most of its motion, the lowest natural frequency (1/s; nan where it
-    is not stable, or nothing has a mass), and whether the stiffness is unsymmetric."""
+    is not stable, or nothing has a mass), the largest force or stiffness of one load (kernel
+    units), and whether the stiffness is unsymmetric."""
 
     stability: Stability
     coordinates: Floats
     least: float
     along: int
     frequency: float
+    size: float = 0.0
     unsymmetric: bool = False
 
 
@@ -58,7 +60,7 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
     matrix, nothing = derivative.matrix, np.nan
     if not np.isfinite(matrix).all():
         return Verdict(Stability.UNKNOWN, coordinates, nothing, 0, nothing)
-    size = max(float(np.max(np.abs(matrix))), found.largest)
+    size = max(float(np.max(np.abs(matrix))), found.largest, balancing.largest(place))
     error = derivative.error + tolerances.MARGINAL_STIFFNESS * size
     off = float(np.max(np.abs(matrix - matrix.T)))
     unsymmetric = off > tolerances.UNSYMMETRIC_STIFFNESS * size
@@ -84,7 +86,7 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
     named = _in_coordinates(symmetric, rates)
     length = forces.session.layout.length
     by_coordinates = nothing if named is None else length * length * float(eigen(named)[0][0])
-    return Verdict(stability, coordinates, by_coordinates, along, frequency, unsymmetric)
+    return Verdict(stability, coordinates, by_coordinates, along, frequency, size, unsymmetric)
 
 
 def _in_coordinates(matrix: Floats, rates: Floats) -> Floats | None:

@@ -109,6 +109,12 @@ MOST_REST_ROWS: Final = 256
 MOST_CHORDS: Final = 12
 """Corrections of predicted equilibria with one stiffness: three or four are enough."""
 
+FEW_CHORDS: Final = 4
+"""So few corrections tell that the next stretch may be longer."""
+
+MANY_CHORDS: Final = 6
+"""More corrections tell that the next stretch should be shorter."""
+
 CHORD_GAIN: Final = 0.5
 """Each correction has to be smaller than the one before by this, or it was predicted too far."""
 
