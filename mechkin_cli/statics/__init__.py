@@ -11,6 +11,6 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "forces": "Derivative DrivenAt Forces ForcesAt FreePlace",
+        "forces": "Derivative DrivenAt Forces ForcesAt FreePlace differentiated summed",
     },
 )

@@ -54,6 +54,7 @@ ORDER = [
     "response",
     "statics",
     "vibration",
+    "vibration",
     "balances",
     "errors",
     "cams",

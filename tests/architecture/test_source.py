@@ -11,7 +11,7 @@ import pytest
 from architecture.package import FILES, ROOT, of_every, tree
 
 MOST_LINES = 640
-MORE_LINES = {"model/model.py": 940}
+MORE_LINES = {"model/model.py": 1010}
 """Files that hold one class with the text of its manual."""
 SOURCES = sorted([*FILES, *ROOT.rglob("*.hpp"), *ROOT.rglob("*.cpp")])
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
