@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from mechkin_cli.session import Precise
     from mechkin_cli.studies import StudyFiles, StudyResults
     from mechkin_cli.variants import Reduce, Variants
+    from mechkin_cli.vibration import Vibration
 
 
 class Parameters(Listed, Mapping[str, float]):
@@ -404,6 +405,38 @@ class Model(Listed):
             UsageError: an unknown run, table or mode.
         """
         return run_free(self, name, tables=tables, mode=mode)
+
+    def vibration(
+        self,
+        run: str | None = None,
+        row: int = 0,
+        coordinates: Sequence[str] | None = None,
+        *,
+        held: Sequence[str] = (),
+    ) -> Vibration:
+        """Small motions about a row of a run: matrices, natural frequencies, mode shapes, state
+        space, in SI units.
+
+        Args:
+            run: its name; None: the file's first equilibria, else its first run.
+            row: its number, from 0.
+            coordinates: that name the motion, as many as there are freedoms; None: the inputs of a
+                sweep, or the independent coordinates of the run's start.
+            held: inputs of a sweep that their drives hold or move; the others are free.
+
+        Raises:
+            InvalidFile: the run cannot be solved.
+            UsageError: an unknown run, row or coordinate, or a row without a position.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> m = load("mechanisms/vibration/engine_mounts.yaml")
+            >>> [round(float(f), 3) for f in m.vibration().frequencies]
+            [0.997]
+        """
+        from mechkin_cli.model.vibrations import vibration
+
+        return vibration(self, run, row, coordinates, held)
 
     def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
         """All runs of the file, or one.

@@ -200,6 +200,18 @@ class Forces:
             lambda rates: self.at(place, np.zeros_like(rates), rates), self.freedoms
         )
 
+    def told(
+        self,
+        place: FreePlace,
+        readout: Readout,
+        u: Floats,
+        rates: Floats,
+        accelerations: Floats,
+        driven: DrivenAt | None = None,
+    ) -> Batch:
+        """Outputs at places of the chart, with arguments as those of `at`."""
+        return self._run(driven or self.driven, place, u, rates, accelerations, readout)
+
     def _run(
         self,
         driven: DrivenAt,

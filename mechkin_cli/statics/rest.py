@@ -19,11 +19,12 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import dimension_of, eliminated
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import input_number, input_text, input_unit
 from mechkin_cli.statics.forces import summed
 from mechkin_cli.statics.newton import Balancing, search
 from mechkin_cli.statics.places import Place, Statics, eigen
-from mechkin_cli.sweep import first_assembly, named_rows
+from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
@@ -264,7 +265,7 @@ class _Branch:
         rows = np.flatnonzero(self.unstable[first : last + 1]) + first
         if not rows.size:
             return ()
-        text = f"the equilibrium of {named_rows(rows)} is unstable: nothing stays there by itself"
+        text = f"the equilibrium of {RowSet.of(rows)} is unstable: nothing stays there by itself"
         hint = "hold it by an effort, or start at another equilibrium with assembly: {near: ...}"
         return (Diagnostic("unstable", "warning", text, hint=hint),)
 

@@ -30,6 +30,7 @@ ROOMS = {
     "derived",
     "balances",
     "statics",
+    "vibration",
     "proofs",
     "sweep",
     "response",
