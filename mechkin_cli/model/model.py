@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -25,6 +25,7 @@ from mechkin_cli.arguments import Setting, a_path, a_text, a_whole_number, setti
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem
+from mechkin_cli.model.parameters import Parameters
 from mechkin_cli.model.position import Position, solver_of
 from mechkin_cli.session import Session
 from mechkin_cli.show import Listed, Listing, Named
@@ -51,48 +52,12 @@ if TYPE_CHECKING:
     from mechkin_cli.vibration import Vibration
 
 
-class Parameters(Listed, Mapping[str, float]):
-    """The parameters of a model by name: values in the file's units, in the file's order.
-
-    Example:
-        >>> from mechkin_cli import load
-        >>> given = load("mechanisms/dissertation/rcsr.yaml").parameters
-        >>> given["P1"], given.unit("P1")
-        (0.5, 'in')
-    """
-
-    def __init__(self, problem: Problem) -> None:
-        self._known, self._units = problem.parameters, problem.units
-
-    def __getitem__(self, name: str) -> float:
-        quantity = self._known[name]
-        in_si = float(quantity.value)  # type: ignore[arg-type]
-        return self._units.from_si(in_si, quantity.dimension)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._known)
-
-    def __len__(self) -> int:
-        return len(self._known)
-
-    def unit(self, name: str) -> str:
-        """The unit of a parameter in the file's units, "" of a pure number."""
-        return self._units.label(self._known[name].dimension)
-
-    @property
-    def listing(self) -> Listing:
-        """Names, values and units."""
-        rows = tuple((name, f"{value:.10g}", self.unit(name)) for name, value in self.items())
-        head = f"{len(rows)} parameter{'' if len(rows) == 1 else 's'}"
-        return Listing(head, ("parameter", "value", "unit") if rows else (), rows)
-
-
 class Model(Listed):
     """A checked mechanism file, as `mk.load` and `mk.loads` return it.
 
     `analyze` runs its sweep, `respond` its responses, and `equilibrium` finds where its loads
-    balance; `modes`, `ranges` and `mobility` tell how it
-    can be assembled and moved. Values are in the file's units throughout.
+    balance; `modes`, `ranges` and `mobility` tell how it can be assembled and moved, `vibration`
+    how it vibrates. Values are in the file's units throughout.
 
     Attributes:
         design: the file with the values of its parameters, in SI and in the kernel.

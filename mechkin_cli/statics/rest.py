@@ -234,8 +234,8 @@ class _Branch:
             if step is not None:
                 # what the last step left tells of the slopes (C. G. Broyden, Mathematics of
                 # Computation 19, 1965)
-                size = summed(step * step)
-                by = np.where(size > 0.0, step / np.where(size > 0.0, size, 1.0), 0.0)
+                square = summed(step * step)
+                by = np.where(square > 0.0, step / np.where(square > 0.0, square, 1.0), 0.0)
                 slopes = slopes + found.forces[:, None, :] * by[None, :, :]
             step = _solved(slopes, -found.forces)
             if step is None:

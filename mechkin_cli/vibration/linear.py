@@ -10,7 +10,8 @@ A place is held by constant efforts: of a sweep by those of its drives, which ac
 else by such along the named coordinates; at an equilibrium they are zero. At rest, with efforts e
 along coordinates h that are such functions of u,
 
-    K = N^-T (dr/du - sum of e_i d^2 h_i / du^2) N^-1,   C = N^-T dr/du' N^-1,   M = N^-T dr/du'' N^-1,
+    K = N^-T (dr/du - sum of e_i d^2 h_i / du^2) N^-1,
+    C = N^-T dr/du' N^-1,   M = N^-T dr/du'' N^-1,
 
 where the second derivatives are accelerations at constant rates u'. About places that drives move,
 the named coordinates rest, and N, P and the accelerations are followed beside the place.
