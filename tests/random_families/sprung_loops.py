@@ -126,7 +126,10 @@ loads:
 
     sides = (1.0, -1.0)
     return SprungLoop(
-        written, ("A.theta",), [by_crank(s) for s in sides], ("D.theta", [by_rocker(s) for s in sides])
+        written,
+        ("A.theta",),
+        [by_crank(s) for s in sides],
+        ("D.theta", [by_rocker(s) for s in sides]),
     )
 
 
@@ -207,7 +210,10 @@ loads:
 
     sides = (1.0, -1.0)
     return SprungLoop(
-        written, ("A.theta",), [by_crank(s) for s in sides], ("D.theta", [by_rocker(s) for s in sides])
+        written,
+        ("A.theta",),
+        [by_crank(s) for s in sides],
+        ("D.theta", [by_rocker(s) for s in sides]),
     )
 
 
@@ -325,5 +331,3 @@ def stationary_of_arm(own: SprungArm, starts: int = 12) -> list[NDArray[np.float
         if all(np.abs(np.remainder(x - y + math.pi, TURN) - math.pi).max() > 1e-4 for y in places):
             places.append(x)
     return places
-
-

@@ -64,7 +64,7 @@ def test_spatial_four_bars(rng: random.Random, window: str) -> None:
 def test_arms_of_two_freedoms(rng: random.Random) -> None:
     own = arm(rng)
     wanted = stationary_of_arm(own)
-    window = {name: (-math.pi, math.pi) for name in ("A.theta", "B.theta")}
+    window = dict.fromkeys(("A.theta", "B.theta"), (-math.pi, math.pi))
     r = mk.loads(own.text).equilibrium(window=window)
     found = np.stack([r["A.theta"], r["B.theta"]], axis=1)
 
