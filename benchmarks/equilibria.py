@@ -2,9 +2,9 @@
 
     python -m benchmarks.equilibria [--rounds N]
 
-Printed are the time of the kernel's calls for one equilibrium with its verdict and their number, the
-whole time of the search, and the time of a row of a sweep at rest in parts of that of the same row
-with all coordinates driven, for sweeps of one turn with several steps. Runs take turns, so that a
+Printed are the time of the kernel's calls for one equilibrium with its verdict and their number,
+the whole time of the search, and the time of a row of a sweep at rest in parts of that of the same row
+with all driven, for sweeps of one turn with several steps. Runs take turns, so that a
 slow moment of the machine meets each, and the best time of each counts.
 """
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -74,9 +74,9 @@ class KernelTime:
 
     def __enter__(self) -> KernelTime:
         def timed(plan: _kernel.Plan, *args: object, **named: object) -> object:
-            begin = perf_counter()
+            begin = process_time()
             found = self._run(plan, *args, **named)  # type: ignore[arg-type]
-            self.seconds += perf_counter() - begin
+            self.seconds += process_time() - begin
             self.calls += 1
             return found
 
@@ -97,9 +97,9 @@ def one_equilibrium(rounds: int) -> None:
     best, whole, calls = np.inf, np.inf, 0
     for _ in range(rounds):
         with KernelTime() as kernel:
-            begin = perf_counter()
+            begin = process_time()
             found = statics.balanced(prepared)
-            whole = min(whole, perf_counter() - begin)
+            whole = min(whole, process_time() - begin)
         best, calls = min(best, kernel.seconds), kernel.calls
     steps = found.found[0][0].steps
     print(f"RCSR with springs: {steps} steps, {calls} calls, {1e6 * best:.0f} us in calls of the")
@@ -118,9 +118,9 @@ def rows_at_rest(rounds: int, step: float) -> None:
         for text in best:
             model = loads(text)
             _ = model.session
-            begin = perf_counter()
+            begin = process_time()
             model.analyze(["A.effort"], tables=[])
-            best[text] = min(best[text], perf_counter() - begin)
+            best[text] = min(best[text], process_time() - begin)
     ratio = best[resting] / best[driven]
     each = 1e6 * best[resting] / count
     print(f"{count} rows, {step:g} deg apart: {each:.1f} us a row at rest, {ratio:.1f} driven ones")

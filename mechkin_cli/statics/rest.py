@@ -96,14 +96,19 @@ class _Branch:
         """All rows, from the equilibrium near an assembly at a row on."""
         driven = self.session.problem.motion.driven
         one = self.session.part(row, row)
-        balancing = Balancing.of(one, [driven[k] for k in self.free])
         own = Statics(one, self.free)
         start = own.place(self.values[:, row], state)
-        try:
-            found = search(balancing, balancing.charted(own, start))
-        except ValueError:
-            found = None
-        if found is None or not found.found:
+        # most are found without knowing what each load does alone
+        for measured in (False, True):
+            coordinates = [driven[k] for k in self.free]
+            balancing = Balancing.of(one, coordinates, measured=measured)
+            try:
+                found = search(balancing, balancing.charted(own, start))
+            except ValueError:
+                return self._nowhere(row)
+            if found.found:
+                break
+        else:
             return self._nowhere(row)
         place = balancing.uncharted(own, found.place)
         last, after = self._march(row, place, 1)
@@ -233,8 +238,8 @@ class _Branch:
             if step is not None:
                 # what the last step left tells of the slopes (C. G. Broyden, Mathematics of
                 # Computation 19, 1965)
-                size = summed(step * step)
-                by = np.where(size > 0.0, step / np.where(size > 0.0, size, 1.0), 0.0)
+                squares = summed(step * step)
+                by = np.where(squares > 0.0, step / np.where(squares > 0.0, squares, 1.0), 0.0)
                 slopes = slopes + found.forces[:, None, :] * by[None, :, :]
             step = _solved(slopes, -found.forces)
             if step is None:
