@@ -17,8 +17,9 @@ from mechkin_cli.arguments import a_text
 from mechkin_cli.assembly import rows_of_start
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import LEDGER_KINDS
+from mechkin_cli.row_notes import Notes
 from mechkin_cli.show import Named
-from mechkin_cli.sweep import Notes, RunVerdicts, has_parts
+from mechkin_cli.sweep import RunVerdicts, has_parts
 from mechkin_cli.tables import Columns, RunParameter, column_of, joined_column, moving_input
 from mechkin_cli.verdict import SWEEP
 
@@ -58,7 +59,7 @@ class Stream:
                     "leave out the tables that read it, or take all rows at once"
                 )
         self._verdicts = RunVerdicts()
-        self._notes = Notes()
+        self._notes = Notes(self.run_rows)
         self.branch = "", ""
 
     def __iter__(self) -> Iterator[Block]:
@@ -83,15 +84,16 @@ class Stream:
 
     def parts(self) -> Iterator[tuple[PartRows, slice]]:
         """The rows as they are solved, and which of each part are in none before it."""
-        verdicts, notes = self._verdicts, self._notes = RunVerdicts(), Notes()
+        verdicts, notes = self._verdicts, self._notes = RunVerdicts(), Notes(self.run_rows)
         for part in self.sweep.parts():
             verdicts.add(part.result, part.own)
-            notes.add(part.result.row_states.diagnostics)
+            rows = part.result.row_states
+            notes.add(rows.diagnostics, rows.span.first, part.own)
             self.branch = part.result.mode, part.result.how
-            rows, own = PartRows(self, part.result), part.own
-            del part
-            yield rows, own
-            del rows
+            solved, own = PartRows(self, part.result), part.own
+            del part, rows
+            yield solved, own
+            del solved
 
     @property
     def verdicts(self) -> RunVerdicts:

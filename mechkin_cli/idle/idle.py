@@ -14,6 +14,7 @@ link turns with the link beside it (`without_spin`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,6 +46,7 @@ from mechkin_cli.mechanism import (
     scale,
 )
 from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.row_notes import Found, RowNote
 from mechkin_cli.tape import largest
 from mechkin_cli.units import LENGTH, MOMENT
 
@@ -127,7 +129,7 @@ def _times(body: RigidLink, a: Vector) -> Vector:
     return (dot((xx, xy, xz), a), dot((xy, yy, yz), a), dot((xz, yz, zz), a))
 
 
-def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagnostic]:
+def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[RowNote]:
     """The largest moment (force) that holds each idle freedom; `moments` (N m, N) by name,
     (components, rows)."""
     notes = []
@@ -136,21 +138,25 @@ def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagn
         if moment is None:
             continue
         row = np.sqrt(sum(part * part for part in moment))
-        most = float(np.max(row[np.isfinite(row)], initial=0.0))
-        dimension = problem.quantities()[idle.holding].dimension
-        text = f"{float(problem.units.from_si(most, dimension)):.6g}"
-        by = "moment about" if dimension == MOMENT else "force along"
-        motion = "sliding" if idle.slides else "spinning"
-        notes.append(
-            Diagnostic(
-                "held-spin",
-                "note",
-                f"{idle.words}; idle: hold keeps it from {motion} by a {by} that line",
-                measured=f"at most {text} {problem.units.label(dimension)}",
-                hint=f"{idle.holding} is its value in each row",
-            )
-        )
+        most = np.where(np.isfinite(row), row, 0.0)
+        words = partial(_held_spin, problem, idle)
+        every = np.ones(most.size, dtype=bool)
+        notes.append(RowNote("held-spin", "note", idle.holding, every, words, most))
     return notes
+
+
+def _held_spin(problem: Problem, idle: Idle, found: Found) -> Diagnostic:
+    dimension = problem.quantities()[idle.holding].dimension
+    text = f"{float(problem.units.from_si(found.told, dimension)):.6g}"
+    by = "moment about" if dimension == MOMENT else "force along"
+    motion = "sliding" if idle.slides else "spinning"
+    return Diagnostic(
+        "held-spin",
+        "note",
+        f"{idle.words}; idle: hold keeps it from {motion} by a {by} that line",
+        measured=f"at most {text} {problem.units.label(dimension)}",
+        hint=f"{idle.holding} is its value in each row",
+    )
 
 
 def nearly_common_notes(problem: Problem) -> list[Diagnostic]:

@@ -4,7 +4,7 @@ own."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,13 +45,12 @@ from mechkin_cli.mechanism.quantities import (
 )
 from mechkin_cli.mechanism.wanted import Wanted
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
+from mechkin_cli.row_notes import Found, RowNote
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
-from mechkin_cli.units import UnitSystem
+from mechkin_cli.units import Dimension, UnitSystem
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-    from numpy.typing import NDArray
 
     from mechkin_cli.expressions import Differentiate
     from mechkin_cli.mechanism.response import AnyBalance, ResponseProblem
@@ -336,7 +335,7 @@ def law_value(law: LoadLaw, resolve: Resolve, rows: int) -> Floats:
     return np.where(inside, found, np.nan)
 
 
-def undefined_laws(problem: Problem, resolve: Resolve, lost: Bools) -> list[Diagnostic]:
+def undefined_laws(problem: Problem, resolve: Resolve, lost: Bools) -> list[RowNote]:
     """What to say of rows in which a law has no value.
 
     Args:
@@ -344,29 +343,33 @@ def undefined_laws(problem: Problem, resolve: Resolve, lost: Bools) -> list[Diag
         resolve: the quantity of a name over the rows, in SI.
         lost: the rows (rows,) to look at.
     """
-    diagnostics = []
-    units = problem.units
+    notes = []
     for law in problem.load_laws:
-        rows = np.flatnonzero(lost & np.isnan(law_value(law, resolve, lost.size)))
-        if not rows.size:
-            continue
-        if law.curve is not None:
-            dimension = resolve(law.reads[0]).dimension
-            first, last = (units.text(x, dimension) for x in (law.curve.first, law.curve.last))
-            words, limit = "lies outside its table", f"{first} to {last}"
-            hint = "extend the table, or keep the motion within it"
-        else:
-            words, limit = "has no finite value", None
-            hint = "write an expression that holds in all rows, or move the rows"
-        text = f"this load {words} in {_count(rows)}; cells that depend on it stay empty"
-        at = _read_by_law(law, resolve, units, int(rows[0]))
-        diagnostics.append(Diagnostic("load-undefined", "error", text, law.place, at, limit, hint))
-    return diagnostics
+        rows = lost & np.isnan(law_value(law, resolve, lost.size))
+        if rows.any():
+            dimension = None if law.curve is None else resolve(law.reads[0]).dimension
+            words = partial(_undefined_law, law, problem.units, dimension)
+            at = partial(_read_by_law, law, resolve, problem.units)
+            notes.append(RowNote("load-undefined", "error", law.place, rows, words, told=at))
+    return notes
 
 
-def _count(rows: Sequence[int] | NDArray[np.intp]) -> str:
-    first = f"row {rows[0] + 1}"
-    return first if len(rows) == 1 else f"{len(rows)} rows, first in {first}"
+def _undefined_law(
+    law: LoadLaw, units: UnitSystem, dimension: Dimension | None, found: Found
+) -> Diagnostic:
+    if law.curve is not None and dimension is not None:
+        low, high = (units.text(x, dimension) for x in (law.curve.first, law.curve.last))
+        words, limit = "lies outside its table", f"{low} to {high}"
+        hint = "extend the table, or keep the motion within it"
+    else:
+        words, limit = "has no finite value", None
+        hint = "write an expression that holds in all rows, or move the rows"
+    rows = found.rows
+    first = f"row {rows.first}"
+    where = first if rows.size == 1 else f"{rows.size} rows, first in {first}"
+    text = f"this load {words} in {where}; cells that depend on it stay empty"
+    at = found.told or first
+    return Diagnostic("load-undefined", "error", text, law.place, at, limit, hint)
 
 
 def _read_by_law(law: LoadLaw, resolve: Resolve, units: UnitSystem, row: int) -> str:
@@ -377,7 +380,7 @@ def _read_by_law(law: LoadLaw, resolve: Resolve, units: UnitSystem, row: int) ->
         if isinstance(value, float | np.ndarray):
             at_row = np.ravel(value)[row if np.size(value) > 1 else 0]
             words.append(f"{name} = {units.text(float(at_row), dimension)}")
-    return ", ".join(words) or f"row {row + 1}"
+    return ", ".join(words)
 
 
 _POSITIONS = "it is taken of coordinates, positions of points, directions and parameters"

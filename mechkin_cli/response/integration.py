@@ -558,7 +558,7 @@ def ending(
     notes, units = [], session.problem.units
     if report.crossings:
         passed = [place_numbers(session, np.array(state)) for _, state in report.crossings]
-        notes.append(passed_straight_on("motion", passed, response.place))
+        notes.append(passed_straight_on("motion", passed, place=response.place))
     if report.stiff:
         text = f"from {_time(units, report.stiff_from)} on the motion is stiff"
         hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from mechkin_cli.assembly import MAY_BE_RIGID, condition_at
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
 from mechkin_cli.plan import PassageEnd, TrackEnd
+from mechkin_cli.row_notes import MOST_PLACES, Found, RowNote
 from mechkin_cli.session import (
     Ending,
     Followed,
@@ -35,8 +37,6 @@ if TYPE_CHECKING:
 
 NEAR_SINGULAR = "a singular position lies next to that place; sweep from its other side"
 NOT_SINGULAR = "that place itself is regular: take smaller steps, or sweep from the other side"
-MOST_SHOWN = 4
-"""Places that a message shows."""
 
 
 def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepRows) -> None:
@@ -89,10 +89,25 @@ def without_repeats(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
     ]
 
 
-def crossing_note(session: Session, passed: Iterable[Floats]) -> Diagnostic:
-    """The branch points that the rows passed straight on, by their inputs."""
-    places = [input_numbers(session.problem, session.layout, inputs) for inputs in passed]
-    return passed_straight_on("branch", places)
+def crossing_note(
+    session: Session, rows: SweepRows, passed: Sequence[tuple[int, Floats]]
+) -> RowNote:
+    """The branch points that the rows passed straight on, each by the first row behind it, in the
+    order in which they were followed, and its inputs."""
+    last = rows.numbers.size - 1
+    places = [
+        (int(rows.numbers[min(row, last)]), _numbers(session, inputs)) for row, inputs in passed
+    ]
+    code, nowhere = "branch-point-passed", np.zeros(rows.span.rows, dtype=bool)
+    return RowNote(code, "note", "", nowhere, _passed, places=places)
+
+
+def _numbers(session: Session, inputs: Floats) -> tuple[Number, ...]:
+    return tuple(input_numbers(session.problem, session.layout, inputs))
+
+
+def _passed(found: Found) -> Diagnostic:
+    return passed_straight_on("branch", [place for _, place in found.places], found.place_count)
 
 
 _TURNED_BACK = {
@@ -113,55 +128,67 @@ _TURNED_BACK = {
 
 def retraced_notes(
     session: Session, rows: SweepRows, touched: Sequence[SingularPlace]
-) -> list[Diagnostic]:
+) -> list[RowNote]:
     """The places at which the inputs come to a dead centre or a branch point and turn back."""
-    notes = []
-    for kind, (code, name, hint) in _TURNED_BACK.items():
-        there = [place for place in touched if place.kind == kind]
-        if not there:
-            continue
-        places = [
-            input_numbers(session.problem, session.layout, place.inputs)
-            for place in there[:MOST_SHOWN]
-        ]
-        shown = ", ".join(
-            f"{'at' if place.is_row else 'behind'} row {rows.span.first + place.row + 1}"
-            for place in there[:MOST_SHOWN]
-        )
-        more = f" and {len(there) - MOST_SHOWN} more" if len(there) > MOST_SHOWN else ""
-        note = Diagnostic(
-            code,
-            "note",
-            f"{shown}{more} the inputs come to {name} and turn back; the rows behind it retrace "
-            "the branch",
-            measured="; ".join(_words(numbers) for numbers in places),
-            hint=hint,
-            numbers=tuple(number for numbers in places for number in numbers),
-        )
-        notes.append(note)
+    notes, last = [], rows.span.rows - 1
+    nowhere = np.zeros(rows.span.rows, dtype=bool)
+    step = 1 if rows.numbers[-1] >= rows.numbers[0] else -1
+    for kind, (code, _, _) in _TURNED_BACK.items():
+        places = []
+        for place in touched:
+            if place.kind == kind:
+                row = rows.span.first + place.row + 1
+                where = f"{'at' if place.is_row else 'behind'} row {row}"
+                behind = place.row if place.is_row else place.row + step
+                shown = where, _numbers(session, place.inputs)
+                places.append((min(max(behind, 0), last), shown))
+        if places:
+            words = partial(_turned_back, kind)
+            notes.append(RowNote(code, "note", "", nowhere, words, places=places))
     return notes
 
 
+def _turned_back(kind: PassageEnd, found: Found) -> Diagnostic:
+    code, name, hint = _TURNED_BACK[kind]
+    shown, places = zip(*(place for _, place in found.places), strict=True)
+    left = found.place_count - len(shown)
+    more = f" and {left} more" if left else ""
+    return Diagnostic(
+        code,
+        "note",
+        f"{', '.join(shown)}{more} the inputs come to {name} and turn back; the rows behind it "
+        "retrace the branch",
+        measured="; ".join(_words(numbers) for numbers in places),
+        hint=hint,
+        numbers=tuple(number for numbers in places for number in numbers),
+    )
+
+
 def passed_straight_on(
-    subject: str, places: Sequence[Sequence[Number]], place: Place | None = None
+    subject: str,
+    places: Sequence[Sequence[Number]],
+    count: int | None = None,
+    place: Place | None = None,
 ) -> Diagnostic:
     """The note that a branch or a motion went straight on through branch points.
 
     Args:
         subject: what passed them.
-        places: numbers of each branch point.
+        places: numbers of each branch point, or of the first of them.
+        count: how many there are; None: as many.
         place: of what asked for the motion.
     """
-    shown = [_words(numbers) for numbers in places[:MOST_SHOWN]]
-    more = len(places) - len(shown)
+    shown = [_words(numbers) for numbers in places[:MOST_PLACES]]
+    count = len(places) if count is None else count
+    more = count - len(shown)
     return Diagnostic(
         "branch-point-passed",
         "note",
-        f"the {subject} passes {'a branch point' if len(places) == 1 else 'branch points'} along "
+        f"the {subject} passes {'a branch point' if count == 1 else 'branch points'} along "
         "its smooth continuation, as assembly: {at_branch_points: straight} asks",
         place,
         measured="; ".join(shown) + (f" and {more} more" if more else ""),
-        numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
+        numbers=tuple(number for numbers in places[:MOST_PLACES] for number in numbers),
     )
 
 

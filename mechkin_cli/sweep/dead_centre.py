@@ -21,6 +21,7 @@ branch.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,6 +30,7 @@ from mechkin_cli import assembly
 from mechkin_cli.assembly import PlacesBefore, at_unit_rate, continued_start, left_for, unit_rates
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.row_notes import Found, RowNote
 from mechkin_cli.session import (
     Ask,
     KernelInputs,
@@ -257,7 +259,7 @@ def _slots(slots: Mapping[str, slice], quantities: Sequence[Wanted]) -> list[int
 # How many digits rows have whose condition may leave few.
 
 
-def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) -> list[Diagnostic]:
+def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) -> list[RowNote]:
     """Says how many digits positions, rates, accelerations and forces have, measured in
     double-double, where they are few.
 
@@ -347,14 +349,26 @@ def _digits(parts: Floats, known: Bools) -> NDArray[np.int64]:
 
 def _not_measured_note(
     rows: SweepRows, numbers: NDArray[np.intp], condition: Floats, lost: Exception
-) -> Diagnostic:
+) -> RowNote:
     """Of rows whose numbers are not in a text, or in it in a way that no tape holds."""
+    words = partial(_not_measured, str(lost))
+    bad = np.nan_to_num(condition, nan=np.inf, posinf=np.inf)
+    return RowNote("few-digits", "note", str(lost), _among(rows, numbers), words, bad)
+
+
+def _among(rows: SweepRows, numbers: NDArray[np.intp]) -> Bools:
+    where: Bools = np.zeros(rows.reached.size, dtype=bool)
+    where[numbers] = True
+    return where
+
+
+def _not_measured(lost: str, found: Found) -> Diagnostic:
     return Diagnostic(
         "few-digits",
         "note",
-        f"{rows.named(numbers)} may have few digits of rates, accelerations and forces; how many "
+        f"{found.rows} may have few digits of rates, accelerations and forces; how many "
         f"could not be measured: {lost}",
-        measured=condition_text(float(condition[numbers].max())),
+        measured=condition_text(float(found.told)),
         limit=f"{CONDITION_FEW_DIGITS:g}",
         hint="their parts that are wrong are about 1e-16 of the condition's square",
     )
@@ -366,36 +380,56 @@ def _few_digits_note(
     few: Bools,
     digits: Mapping[str, NDArray[np.int64]],
     condition: Floats,
-) -> Diagnostic:
-    poor = np.flatnonzero(few)
-    worst = poor[np.argmin(np.min([found[poor] for found in digits.values()], axis=0))]
-    row = numbers[worst]
-    where = f"{rows.named(numbers[poor])} {'has' if poor.size == 1 else 'have'} few digits"
-    if poor.size > 1:
-        where += f"; fewest has {rows.named([row])}"
-    told = ", ".join(f"{name} {found[worst]}" for name, found in digits.items())
+) -> RowNote:
+    bad = np.zeros(rows.reached.size)
+    bad[numbers] = -np.min(list(digits.values()), axis=0)
+
+    def told(row: int) -> tuple[str, float, list[tuple[str, int]]]:
+        at = int(np.searchsorted(numbers, row))
+        own = [(name, int(found[at])) for name, found in digits.items()]
+        return rows.named([row]), float(condition[row]), own
+
+    return RowNote("few-digits", "warning", "", _among(rows, numbers[few]), _few_digits, bad, told)
+
+
+def _few_digits(found: Found) -> Diagnostic:
+    row, condition, digits = found.told
+    where = f"{found.rows} {'has' if found.rows.size == 1 else 'have'} few digits"
+    if found.rows.size > 1:
+        where += f"; fewest has {row}"
+    told = ", ".join(f"{name} {count}" for name, count in digits)
     return Diagnostic(
         "few-digits",
         "warning",
         f"{where}: {told}, as measured in double-double, in parts of the largest of each kind in "
         "the row",
-        measured=condition_text(float(condition[row])),
+        measured=condition_text(condition),
         hint="mechkin analyze --errors measures every cell; drive another coordinate there, or end "
         "the sweep before",
-        numbers=tuple(Number(f"digits of {n}", float(f[worst])) for n, f in digits.items()),
+        numbers=tuple(Number(f"digits of {name}", float(count)) for name, count in digits),
     )
 
 
-def _note(rows: SweepRows) -> Diagnostic:
+def _note(rows: SweepRows) -> RowNote:
     standing = [before.row for before in rows.dead_centres]
-    numbers = list(dict.fromkeys(standing))
-    where = f"{rows.named(sorted(numbers))} {'stands' if len(numbers) == 1 else 'stand'}"
-    double = [number for number in numbers if standing.count(number) > 1]
+    there = _among(rows, np.array(standing))
+    # the first row on either of two branches is told
+    count = np.bincount(standing, minlength=there.size)
+
+    def told(row: int) -> str:
+        return rows.named([row]) if count[row] > 1 else ""
+
+    double = (count > 1).astype(np.float64)
+    return RowNote("at-dead-centre", "warning", "", there, _at_dead_centre, double, told)
+
+
+def _at_dead_centre(found: Found) -> Diagnostic:
+    where = f"{found.rows} {'stands' if found.rows.size == 1 else 'stand'}"
     both = ""
-    if double:
+    if found.told:
         both = (
-            f"; it is undecided on which of two branches {rows.named(double[:1])} is, so what is "
-            "infinite with another sign on each is empty, too"
+            f"; it is undecided on which of two branches {found.told} is, so what is infinite with "
+            "another sign on each is empty, too"
         )
     return Diagnostic(
         "at-dead-centre",

@@ -125,7 +125,8 @@ class _Lines:
                 row = found
         from mechkin_cli.sweep.branch_end import without_repeats
 
-        self.rows.diagnostics = without_repeats(self.rows.diagnostics)
+        ends = [one for one in self.rows.diagnostics if isinstance(one, Diagnostic)]
+        self.rows.diagnostics = [*without_repeats(ends)]
         return self.rows
 
     def _along(self, row: int, state: Floats, turn: Floats | None) -> None:
@@ -195,7 +196,7 @@ def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row
 
     values = np.ascontiguousarray(session.inputs.values[:, rows.numbers])
     touched: list[SingularPlace] = []
-    passed: list[Floats] = []
+    passed: list[tuple[int, Floats]] = []
     first, way = 0, followed
     onward: Followed | None = followed
     while onward is not None:
@@ -216,16 +217,16 @@ def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row
         touched.append(place)
         # a branch point at which the inputs turn back is not passed
         passed += [
-            inputs
+            (first + row, inputs)
             for row, inputs in way.crossings
             if first + row < behind and not place.is_at(inputs)
         ]
         first = behind
     if first < rows.numbers.size:
-        passed += [inputs for _, inputs in way.crossings]
+        passed += [(first + row, inputs) for row, inputs in way.crossings]
     rows.diagnostics += branch_end.retraced_notes(session, rows, touched)
     if passed:
-        rows.diagnostics.append(branch_end.crossing_note(session, passed))
+        rows.diagnostics.append(branch_end.crossing_note(session, rows, passed))
     rest = rows.part(slice(first, None))
     if way.end != TrackEnd.FINISHED and not rest.reached.all():
         path = np.ascontiguousarray(values[:, first:])

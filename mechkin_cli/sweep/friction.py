@@ -6,6 +6,7 @@ Rows are judged when forces are read for the first time (`FrictionRows`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,15 +21,16 @@ from mechkin_cli.mechanism import (
     strands_of,
 )
 from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState, is_lifted
+from mechkin_cli.row_notes import Found, RowNote
 from mechkin_cli.sweep.rows import RunRows
 from mechkin_cli.tape import of_two
-from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT, Dimension
+from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT
 from mechkin_cli.verdict import Status, has_rates
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Problem, Rubbing, Wanted
+    from mechkin_cli.mechanism import LockedFreedom, Problem, Rubbing, Wanted
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.rows import SweepRows
+    from mechkin_cli.units import Dimension, UnitSystem
 
 
 CODE = "friction-undecided"
@@ -51,7 +53,7 @@ _WHY = {
 """Why a row has no answer, and what to do."""
 
 
-FrictionVerdict = tuple["Bools", "Bools", list[Diagnostic]]
+FrictionVerdict = tuple["Bools", "Bools", list[RowNote]]
 """Rows (rows,) in which some forces have no value, those of them in which all would be unfounded,
 and messages."""
 
@@ -96,22 +98,26 @@ def friction_verdict(result: RunRows) -> FrictionVerdict:
     rows = result.row_states
     judged = rows.reached & has_rates(rows.status)
     lost, unfounded = np.zeros((2, judged.size), dtype=bool)
-    diagnostics = []
-    for where, diagnostic in _undecided(result, judged):
-        lost |= where
-        diagnostics.append(diagnostic)
-    for where, diagnostic in (*_not_unique(result, judged), *_spinning(result, judged)):
-        unfounded |= where
-        diagnostics.append(diagnostic)
+    notes = []
+    for note in _undecided(result, judged):
+        lost |= note.where
+        notes.append(note)
+    for note in (*_not_unique(result, judged), *_spinning(result, judged)):
+        unfounded |= note.where
+        notes.append(note)
     lost |= unfounded
     locking = judged & (result.columns[SELF_LOCKING.name][0] > 0.0) & ~lost
     if locking.any():
-        text = (
-            f"in {_rows(rows, locking)} a drive would brake without friction and has to push with "
-            "it: the loads alone do not move the mechanism there"
-        )
-        diagnostics.append(Diagnostic("self-locking", "note", text))
-    return lost, unfounded, diagnostics
+        notes.append(RowNote("self-locking", "note", "", locking, _self_locking))
+    return lost, unfounded, notes
+
+
+def _self_locking(found: Found) -> Diagnostic:
+    text = (
+        f"in {found.rows.counted} a drive would brake without friction and has to push with it: "
+        "the loads alone do not move the mechanism there"
+    )
+    return Diagnostic("self-locking", "note", text)
 
 
 def unsupported(result: RunRows) -> FrictionVerdict:
@@ -119,35 +125,35 @@ def unsupported(result: RunRows) -> FrictionVerdict:
     twice, and messages."""
     rows, problem = result.row_states, result.problem
     judged = rows.reached & has_rates(rows.status)
-    lost, diagnostics = np.zeros(judged.size, dtype=bool), []
+    lost, notes = np.zeros(judged.size, dtype=bool), []
     for one in problem.stopped:
         unit = result.session.layout.length if one.turns else 1.0
         level = result.columns[REACTION_LEVEL.name][0]
         holding = np.abs(result.columns[one.holding][0])
         where = judged & (holding > tolerances.UNIQUE_CELL * level * unit)
         if where.any():
-            dimension = MOMENT if one.turns else FORCE
-            most = float(problem.units.from_si(float(np.max(holding[where])), dimension))
-            diagnostics.append(
-                Diagnostic(
-                    Status.unsupported.label,
-                    "warning",
-                    f"{one.words}, and the loads push it in {_rows(rows, where)}: no finite "
-                    "reactions hold it; forces stay empty",
-                    measured=f"{most:.6g} {problem.units.label(dimension)}",
-                    limit=f"{tolerances.UNIQUE_CELL:g} of the largest reaction",
-                    hint="add a constraint along that motion, or remove that component of the load",
-                )
-            )
+            words = partial(_unsupported, problem, one)
+            code = Status.unsupported.label
+            notes.append(RowNote(code, "warning", one.holding, where, words, holding))
         lost |= where
-    return lost, lost, diagnostics
+    return lost, lost, notes
 
 
-Findings = Iterator[tuple["Bools", Diagnostic]]
-"""Rows (rows,) with a message on them."""
+def _unsupported(problem: Problem, one: LockedFreedom, found: Found) -> Diagnostic:
+    dimension = MOMENT if one.turns else FORCE
+    most = float(problem.units.from_si(found.told, dimension))
+    return Diagnostic(
+        Status.unsupported.label,
+        "warning",
+        f"{one.words}, and the loads push it in {found.rows.counted}: no finite reactions hold it; "
+        "forces stay empty",
+        measured=f"{most:.6g} {problem.units.label(dimension)}",
+        limit=f"{tolerances.UNIQUE_CELL:g} of the largest reaction",
+        hint="add a constraint along that motion, or remove that component of the load",
+    )
 
 
-def _slack(result: RunRows, lost: Bools) -> Findings:
+def _slack(result: RunRows, lost: Bools) -> Iterator[RowNote]:
     """Rows in which strands would have to push."""
     rows, problem = result.row_states, result.problem
     strands = _strands(problem)
@@ -156,22 +162,25 @@ def _slack(result: RunRows, lost: Bools) -> Findings:
         tension = result.columns[strand.name][0]
         where = rows.reached & has_rates(rows.status) & ~lost & is_slack(tension, level)
         if where.any():
-            least = float(problem.units.from_si(float(np.min(tension[where])), FORCE))
-            yield (
-                where,
-                Diagnostic(
-                    Status.slack.label,
-                    "warning",
-                    f"a strand of {strand.owner} goes slack in {_rows(rows, where)}: its forces "
-                    "are as if it pushed",
-                    measured=f"{strand.name} = {least:.6g} {problem.units.label(FORCE)}",
-                    limit="0",
-                    hint="give more pretension, or hold the load so that it always pulls",
-                ),
-            )
+            words = partial(_goes_slack, problem, strand)
+            code, pull = Status.slack.label, tension.__getitem__
+            yield RowNote(code, "warning", strand.name, where, words, -tension, pull)
 
 
-def lifted(result: RunRows) -> list[Diagnostic]:
+def _goes_slack(problem: Problem, strand: Wanted, found: Found) -> Diagnostic:
+    least = float(problem.units.from_si(float(found.told), FORCE))
+    return Diagnostic(
+        Status.slack.label,
+        "warning",
+        f"a strand of {strand.owner} goes slack in {found.rows.counted}: its forces are as if it "
+        "pushed",
+        measured=f"{strand.name} = {least:.6g} {problem.units.label(FORCE)}",
+        limit="0",
+        hint="give more pretension, or hold the load so that it always pulls",
+    )
+
+
+def lifted(result: RunRows) -> list[RowNote]:
     """Warns of rows in which a cable would leave a pulley, which then are slack, or the plane of
     one."""
     rows, units = result.row_states, result.problem.units
@@ -180,26 +189,36 @@ def lifted(result: RunRows) -> list[Diagnostic]:
         where = rows.reached & is_lifted(extent, value)
         if where.any():
             rows.status[where & (rows.status == int(Status.ok))] = Status.slack
-            least = float(units.from_si(float(np.min(value[where])), LENGTH))
-            text = f"{name} {extent.words} {extent.place} in {_rows(rows, where)}"
-            text += ": it is led as if it stuck there"
-            measured = f"{least:.6g} {units.label(LENGTH)}"
-            hint = "end the sweep before it, or leave that place out of the cable's path"
+            what = f"{name} {extent.words} {extent.place}"
+            words = partial(_lifts, units, what)
             code = Status.slack.label
-            found.append(Diagnostic(code, "warning", text, None, measured, "0", hint))
+            found.append(RowNote(code, "warning", what, where, words, -value, value.__getitem__))
     for name, fleet, value in result.session.layout.fleets(rows.states):
         where = rows.reached & (np.abs(value) > tolerances.FLEET)
         if where.any():
             rows.status[where & (rows.status == int(Status.ok))] = Status.fleet_angle
-            most = float(of_two("ATAN2", float(np.max(np.abs(value[where]))), 1.0))
-            text = f"{name} {fleet.words} in {_rows(rows, where)}: it is led as if it did not"
-            hint = (
-                "guide it in that plane, or lead it over a pulley that swivels: swivel: [0, 0, 1]"
-            )
-            measured = f"fleet angle {units.text(most, ANGLE)}"
-            code, limit = Status.fleet_angle.label, units.text(tolerances.FLEET, ANGLE)
-            found.append(Diagnostic(code, "warning", text, None, measured, limit, hint))
+            what = f"{name} {fleet.words}"
+            words = partial(_fleets, units, what)
+            code = Status.fleet_angle.label
+            found.append(RowNote(code, "warning", what, where, words, np.abs(value)))
     return found
+
+
+def _lifts(units: UnitSystem, what: str, found: Found) -> Diagnostic:
+    least = float(units.from_si(float(found.told), LENGTH))
+    text = f"{what} in {found.rows.counted}: it is led as if it stuck there"
+    measured = f"{least:.6g} {units.label(LENGTH)}"
+    hint = "end the sweep before it, or leave that place out of the cable's path"
+    return Diagnostic(Status.slack.label, "warning", text, None, measured, "0", hint)
+
+
+def _fleets(units: UnitSystem, what: str, found: Found) -> Diagnostic:
+    most = float(of_two("ATAN2", found.told, 1.0))
+    text = f"{what} in {found.rows.counted}: it is led as if it did not"
+    hint = "guide it in that plane, or lead it over a pulley that swivels: swivel: [0, 0, 1]"
+    measured = f"fleet angle {units.text(most, ANGLE)}"
+    code, limit = Status.fleet_angle.label, units.text(tolerances.FLEET, ANGLE)
+    return Diagnostic(code, "warning", text, None, measured, limit, hint)
 
 
 def is_slack(tension: Floats, level: Floats) -> Bools:
@@ -207,21 +226,26 @@ def is_slack(tension: Floats, level: Floats) -> Bools:
     return np.asarray(tension < -tolerances.UNIQUE_CELL * level)
 
 
-def _undecided(result: RunRows, judged: Bools) -> Findings:
-    rows, frictions = result.row_states, result.problem.mechanism.frictions
+def _undecided(result: RunRows, judged: Bools) -> Iterator[RowNote]:
+    frictions = result.problem.mechanism.frictions
     states = [result.columns[q.name][0] for q in friction_states(result.problem.mechanism)]
     for code, (why, cure) in _WHY.items():
         masks = [judged & (state == int(code)) for state in states]
-        named = [one for one, where in zip(frictions, masks, strict=True) if where.any()]
-        if named:
-            where = np.any(masks, axis=0)
+        where = np.any(masks, axis=0)
+        if where.any():
             if code is FrictionState.AT_REST and not result.problem.motion.inputs:
                 cure = "while all rests, each friction takes what holds it: positions are known"
-            text = f"{why.format(rubbing_words(named))}; forces stay empty in {_rows(rows, where)}"
-            yield where, Diagnostic(CODE, "warning", text, named[0].place, hint=cure)
+            words = partial(_without_answer, frictions, why, cure)
+            yield RowNote(CODE, "warning", code, where, words, marks=tuple(enumerate(masks)))
 
 
-def _not_unique(result: RunRows, judged: Bools) -> Findings:
+def _without_answer(frictions: Sequence[Rubbing], why: str, cure: str, found: Found) -> Diagnostic:
+    named = [frictions[number] for number in sorted(found.marks)]
+    text = f"{why.format(rubbing_words(named))}; forces stay empty in {found.rows.counted}"
+    return Diagnostic(CODE, "warning", text, named[0].place, hint=cure)
+
+
+def _not_unique(result: RunRows, judged: Bools) -> Iterator[RowNote]:
     """Friction by a reaction that redundant constraints leave arbitrary."""
     known = result.problem.quantities()
     frictions = result.problem.mechanism.frictions if result.shifts else ()
@@ -232,16 +256,21 @@ def _not_unique(result: RunRows, judged: Bools) -> Findings:
     columns = [result.evaluated(wanted, shift=shift) for shift in (0, *result.shifts)]
     level = result.columns[REACTION_LEVEL.name][0]
     lost, named = np.zeros(judged.size, dtype=bool), []
-    for rubbing, name in zip(frictions, names, strict=True):
+    for number, (rubbing, name) in enumerate(zip(frictions, names, strict=True)):
         own, *others = (np.abs(each[name][0]) for each in columns)
         limit = tolerances.UNIQUE_CELL * np.fmax(own, level)
         is_unique = np.all([np.abs(other - own) <= limit for other in others], axis=0)
         where = judged & np.isfinite(own) & ~is_unique
         if where.any() and rubbing.at_rest != 0.0:
             lost |= where
-            named.append(rubbing)
+            named.append((number, where))
     if named:
-        yield lost, arbitrary_friction(named)
+        words = partial(_arbitrary, frictions)
+        yield RowNote("friction-not-unique", "error", "", lost, words, marks=named)
+
+
+def _arbitrary(frictions: Sequence[Rubbing], found: Found) -> Diagnostic:
+    return arbitrary_friction([frictions[number] for number in sorted(found.marks)])
 
 
 def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
@@ -259,29 +288,31 @@ def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
     )
 
 
-def _spinning(result: RunRows, judged: Bools) -> Findings:
+def _spinning(result: RunRows, judged: Bools) -> Iterator[RowNote]:
     """Friction that would drive an idle freedom."""
-    problem, rows = result.problem, result.row_states
+    problem = result.problem
     level, length = result.columns[REACTION_LEVEL.name][0], result.session.layout.length
     for freedom in idle.idle_freedoms(problem) if _holding(problem) else ():
         unit = 1.0 if freedom.slides else length
         holding = np.sqrt(sum(part * part for part in result.columns[freedom.holding]))
         where = judged & (holding > tolerances.UNIQUE_CELL * level * unit)
         if where.any():
-            dimension = FORCE if freedom.slides else MOMENT
-            most = float(problem.units.from_si(float(np.max(holding[where])), dimension))
-            motion, what = ("slide", "a force") if freedom.slides else ("spin", "a moment")
-            yield (
-                where,
-                Diagnostic(
-                    "loaded-spin",
-                    "error",
-                    f"{freedom.words}, and friction drives it in {_rows(rows, where)}: the "
-                    f"{motion} is a dynamic freedom, forces depend on it",
-                    measured=f"{most:.6g} {problem.units.label(dimension)}",
-                    hint=f"{freedom.cure}, or accept {what} that holds it with idle: hold",
-                ),
-            )
+            words = partial(_spins, problem, freedom)
+            yield RowNote("loaded-spin", "error", freedom.holding, where, words, holding)
+
+
+def _spins(problem: Problem, freedom: idle.Idle, found: Found) -> Diagnostic:
+    dimension = FORCE if freedom.slides else MOMENT
+    most = float(problem.units.from_si(found.told, dimension))
+    motion, what = ("slide", "a force") if freedom.slides else ("spin", "a moment")
+    return Diagnostic(
+        "loaded-spin",
+        "error",
+        f"{freedom.words}, and friction drives it in {found.rows.counted}: the {motion} is a "
+        "dynamic freedom, forces depend on it",
+        measured=f"{most:.6g} {problem.units.label(dimension)}",
+        hint=f"{freedom.cure}, or accept {what} that holds it with idle: hold",
+    )
 
 
 def unfounded_in_motion(problem: Problem, *, redundant: bool) -> Diagnostic | None:
@@ -305,9 +336,9 @@ def unfounded_in_motion(problem: Problem, *, redundant: bool) -> Diagnostic | No
     return None
 
 
-def uncounted_notes(result: RunRows) -> list[Diagnostic]:
+def uncounted_notes(result: RunRows) -> list[RowNote]:
     """Loads of joints that rub which their friction does not go by, for lack of a length."""
-    notes: list[Diagnostic] = []
+    notes: list[RowNote] = []
     problem, known = result.problem, result.problem.quantities()
     sound = result.solved & (result.status != Status.dead_centre)
     for rubbing in problem.mechanism.frictions:
@@ -324,9 +355,9 @@ def uncounted_notes(result: RunRows) -> list[Diagnostic]:
             unit = 1.0 if dimension == FORCE else result.session.layout.length
             counts = sound & (size > tolerances.UNIQUE_CELL * level * unit)
             if counts.any():
-                most = float(problem.units.from_si(float(np.max(size[counts])), dimension))
-                measured = f"at most {most:.6g} {problem.units.label(dimension)}"
-                notes.append(_uncounted_note(rubbing, key, load, measured))
+                words = partial(_uncounted_note, rubbing, key, load, problem.units)
+                about = rubbing.joint, load
+                notes.append(RowNote("friction-uncounted", "warning", about, counts, words, size))
     return notes
 
 
@@ -347,7 +378,12 @@ def _dot(a: Floats, b: Floats) -> Floats:
     return product
 
 
-def _uncounted_note(rubbing: Rubbing, key: str, load: str, measured: str) -> Diagnostic:
+def _uncounted_note(
+    rubbing: Rubbing, key: str, load: str, units: UnitSystem, found: Found
+) -> Diagnostic:
+    dimension = FORCE if load == "axial force" else MOMENT
+    most = float(units.from_si(found.told, dimension))
+    measured = f"at most {most:.6g} {units.label(dimension)}"
     name = "moment about its axis" if load == "moment about it" else load
     return Diagnostic(
         "friction-uncounted",
@@ -358,15 +394,6 @@ def _uncounted_note(rubbing: Rubbing, key: str, load: str, measured: str) -> Dia
         measured=measured,
         hint=f"give the {key} of what takes it, or free the joint of it",
     )
-
-
-def _rows(rows: SweepRows, where: Bools) -> str:
-    numbers = np.flatnonzero(where) + rows.span.first + 1
-    if numbers.size == 1:
-        return f"row {numbers[0]}"
-    if numbers.size == rows.span.run_rows:
-        return "all rows"
-    return f"{numbers.size} rows, first in row {numbers[0]}"
 
 
 def judged_by(problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
@@ -392,9 +419,9 @@ def _judged(result: RunRows) -> FrictionVerdict:
         rows.status[undecided] = Status.friction_undecided
         lost, unfounded, said = loose | undecided, unfounded | empty, said + more
     rows.status[loose] = Status.unsupported
-    for where, diagnostic in _slack(result, lost):
-        rows.status[where & (rows.status == int(Status.ok))] = Status.slack
-        said.append(diagnostic)
+    for note in _slack(result, lost):
+        rows.status[note.where & (rows.status == int(Status.ok))] = Status.slack
+        said.append(note)
     rows.diagnostics += said
     return lost, unfounded, said
 

@@ -3,20 +3,19 @@ them."""
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import dimension_of
+from mechkin_cli.row_notes import Found, RowNote, RowSet
 from mechkin_cli.verdict import Status, has_forces
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.mechanism import Limit, Problem, Wanted
-    from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.rows import RunRows, SweepRows
+    from mechkin_cli.sweep.rows import RunRows
 
 
 def limited(problem: Problem) -> dict[Wanted, Limit]:
@@ -38,21 +37,29 @@ def judge_limits(result: RunRows) -> None:
         for side, end in ((-1.0, limit.low), (1.0, limit.high)):
             there = out & (side * off > 0.0)
             if there.any():
-                rows.diagnostics.append(_note(rows, problem, limit, end, values, there))
+                words = partial(_note, problem, limit, end)
+                rows.diagnostics.append(
+                    RowNote(
+                        Status.beyond_limit.label,
+                        "warning",
+                        (limit.name, side),
+                        there,
+                        words,
+                        np.abs(values - end),
+                        values.__getitem__,
+                    )
+                )
 
 
-def _note(
-    rows: SweepRows, problem: Problem, limit: Limit, end: float, values: Floats, there: Bools
-) -> Diagnostic:
-    numbers = np.flatnonzero(there)
-    farthest = float(values[numbers[np.argmax(np.abs(values[numbers] - end))]])
+def _note(problem: Problem, limit: Limit, end: float, found: Found) -> Diagnostic:
+    farthest = float(found.told)
     units, dimension = problem.units, dimension_of(limit.coordinate)
     value, at = (float(units.from_si(x, dimension)) for x in (farthest, end))
     unit = units.label(dimension)
     return Diagnostic(
         Status.beyond_limit.label,
         "warning",
-        f"{_rows(numbers + rows.span.first)} beyond the "
+        f"{_rows(found.rows)} beyond the "
         f"{'least' if end == limit.low else 'largest'} value of {limit.name}: the mechanism does "
         "not come there",
         limit.place,
@@ -63,10 +70,9 @@ def _note(
     )
 
 
-def _rows(numbers: NDArray[np.intp]) -> str:
-    first, last = numbers[0] + 1, numbers[-1] + 1
-    if len(numbers) == 1:
-        return f"row {first} lies"
-    if last - first + 1 == len(numbers):
-        return f"rows {first} to {last} lie"
-    return f"{len(numbers)} rows, first row {first}, lie"
+def _rows(rows: RowSet) -> str:
+    if rows.size == 1:
+        return f"row {rows.first} lies"
+    if rows.last - rows.first + 1 == rows.size:
+        return f"rows {rows.first} to {rows.last} lie"
+    return f"{rows.size} rows, first row {rows.first}, lie"

@@ -8,6 +8,7 @@ value.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +28,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.row_notes import Found, RowNote
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.structure import listed
 from mechkin_cli.sweep.rows import RunRows
@@ -132,7 +134,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
     return found
 
 
-def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
+def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> RowNote:
     """Redundant constraints leave some reactions arbitrary; which loads of the bearings asked for
     are unique nevertheless."""
     graph = result.graph
@@ -140,24 +142,37 @@ def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     joints = sorted({graph.edges[k].joint.name for loop in graph.loops for k, _ in loop})
     joints = sorted(filter(is_written, {*joints, *(c.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
+    text = (
+        f"{constraints} in the loops through {', '.join(joints)}: cells of reactions that depend "
+        "on them are not unique and stay empty"
+    )
+    loads = _loads_beside(result, asked)
+    words = partial(_redundancy, text, [load for load, _ in loads])
+    marks: list[tuple[str, Bools]] = []
+    for load, reaction in loads:
+        arbitrary = _is_arbitrary(result, load)
+        if arbitrary.any():
+            marks.append((load, arbitrary))
+        else:
+            marks.append((f"reaction of {load}", _is_arbitrary(result, f"norm({reaction})")))
+    return RowNote("not-unique", "note", "", result.row_states.reached, words, marks=marks)
+
+
+def _redundancy(text: str, loads: Sequence[str], found: Found) -> Diagnostic:
+    """Names the loads that are unique in every row, of reactions that are not in some."""
     free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
-    unique = _unique_loads(result, asked)
+    unique = [
+        load for load in loads if load not in found.marks and f"reaction of {load}" in found.marks
+    ]
     if unique:
         more = ", ..." if len(unique) > LOADS_NAMED else ""
         are = "is" if len(unique) == 1 else "are"
         free = f"ask for {', '.join(unique[:LOADS_NAMED])}{more}, which {are} unique; or {free}"
-    return Diagnostic(
-        "not-unique",
-        "note",
-        f"{constraints} in the loops through {', '.join(joints)}: cells of reactions that depend "
-        "on them are not unique and stay empty",
-        hint=free,
-    )
+    return Diagnostic("not-unique", "note", text, hint=free)
 
 
-def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
-    """The bearing loads of the reactions asked for that are unique in every row, where the
-    reactions are not; along a slide there is none."""
+def _loads_beside(result: RunRows, asked: Sequence[Wanted]) -> list[tuple[str, str]]:
+    """The bearing loads of the reactions asked for, with these; along a slide there is none."""
     known, joints = result.problem.quantities(), result.problem.mechanism.joints
     wanted = {quantity.name for quantity in asked}
     found = []
@@ -168,12 +183,12 @@ def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
         reaction = f"{load.owner}.{'moment' if load.dimension == MOMENT else 'force'}"
         if reaction not in wanted or (slides and load.kind == "axial_force"):
             continue
-        if _is_unique(result, load.name) and not _is_unique(result, f"norm({reaction})"):
-            found.append(load.name)
+        found.append((load.name, reaction))
     return found
 
 
-def _is_unique(result: RunRows, text: str) -> bool:
+def _is_arbitrary(result: RunRows, text: str) -> Bools:
+    """Rows (rows,) in which a quantity is not unique."""
     expression, reached = parse(text), result.row_states.reached
 
     def values(source: RunRows) -> Floats:
@@ -182,7 +197,9 @@ def _is_unique(result: RunRows, text: str) -> bool:
 
     others = [values(other) for other in result.alternatives]
     disturbed = [values(other) for other in result.disturbed]
-    return bool(np.isfinite(unique_cells(values(result), others, disturbed)).all())
+    arbitrary: Bools = np.zeros(reached.size, dtype=bool)
+    arbitrary[reached] = ~np.isfinite(unique_cells(values(result), others, disturbed))
+    return arbitrary
 
 
 def first_order_note(problem: Problem) -> Diagnostic:
@@ -197,34 +214,35 @@ def first_order_note(problem: Problem) -> Diagnostic:
     )
 
 
-def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
+def condition_notes(rows: SweepRows, condition: Floats) -> list[RowNote]:
     """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
     found = []
-    for status, limit in CONDITION_LIMITS.items():
-        cost = (
-            "rates and loads there keep fewer than nine digits"
-            if status.has_rates
-            else "the rank of the constraints cannot be decided there; rates and reactions stay "
-            "empty"
-        )
-        numbers = np.flatnonzero(rows.status == status)
-        if not numbers.size:
-            continue
-        worst = float(np.max(np.nan_to_num(condition[numbers], nan=np.inf)))
-        verb = "is" if numbers.size == 1 else "are"
-        found.append(
-            Diagnostic(
-                status.label,
-                "warning",
-                f"{rows.named(numbers)} {verb} {status.label}: {cost}",
-                measured=condition_text(worst),
-                limit=f"{limit:g}",
-                hint="move the sweep by a fraction of its step, or keep away from the singular "
-                "position",
-                numbers=(Number("condition", worst, limit=limit),),
-            )
-        )
+    for status in CONDITION_LIMITS:
+        there = rows.status == status
+        if there.any():
+            bad = np.nan_to_num(condition, nan=np.inf, posinf=np.inf)
+            words = partial(_condition_note, status)
+            found.append(RowNote(status.label, "warning", "", there, words, bad))
     return found
+
+
+def _condition_note(status: Status, found: Found) -> Diagnostic:
+    worst, limit = float(found.told), CONDITION_LIMITS[status]
+    cost = (
+        "rates and loads there keep fewer than nine digits"
+        if status.has_rates
+        else "the rank of the constraints cannot be decided there; rates and reactions stay empty"
+    )
+    verb = "is" if found.rows.size == 1 else "are"
+    return Diagnostic(
+        status.label,
+        "warning",
+        f"{found.rows} {verb} {status.label}: {cost}",
+        measured=condition_text(worst),
+        limit=f"{limit:g}",
+        hint="move the sweep by a fraction of its step, or keep away from the singular position",
+        numbers=(Number("condition", worst, limit=limit),),
+    )
 
 
 def condition_text(value: float) -> str:
@@ -233,14 +251,19 @@ def condition_text(value: float) -> str:
     return f"condition {value:.2g}" if value <= most else f"condition above {most:.2g}"
 
 
-def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
+def not_converged_note(rows: SweepRows, residual: Floats) -> RowNote:
     """Rows whose loops did not close."""
-    failed = np.flatnonzero(rows.status == Status.not_converged)
-    worst = float(np.max(residual[failed]))
+    failed = rows.status == Status.not_converged
+    bad = np.nan_to_num(residual, nan=np.inf, posinf=np.inf)
+    return RowNote("not-converged", "error", "", failed, _not_converged, bad)
+
+
+def _not_converged(found: Found) -> Diagnostic:
+    worst = float(found.told)
     return Diagnostic(
         "not-converged",
         "error",
-        f"{rows.named(failed)} did not close",
+        f"{found.rows} did not close",
         measured=f"residual {worst:.2g}",
         limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint="this may be a special position; move the sweep by a fraction of its step",
@@ -365,7 +388,7 @@ def is_held(result: RunRows) -> bool:
     return lost is None or not lost.any()
 
 
-def actuation_notes(result: RunRows) -> list[Diagnostic]:
+def actuation_notes(result: RunRows) -> list[RowNote]:
     """Names the set and the rows where it is singular, or next to that."""
     lost, drives = unheld(result), result.problem.mechanism.drives
     if lost is None or drives is None:
@@ -374,28 +397,35 @@ def actuation_notes(result: RunRows) -> list[Diagnostic]:
     near = result.solved & ~lost & (least < 1.0 / tolerances.CONDITION_NEAR_SINGULAR)
     names = ", ".join(".".join(pair) for pair in drives.actuators)
     notes = []
-    if lost.any():
-        where = result.row_states.named(lost)
-        text = (
-            f"the actuators {names} are a singular set in {where}: the mechanism can move "
-            f"there while all of them rest; their efforts and the reactions stay empty"
-        )
-        notes.append(_note("singular-actuators", result, lost, text, tolerances.ACTUATORS_AT_REST))
-    if near.any():
-        where = result.row_states.named(near)
-        text = (
-            f"the actuators {names} are next to a singular set in {where}: their efforts "
-            "are large and keep fewer than nine digits"
-        )
-        limit = 1.0 / tolerances.CONDITION_NEAR_SINGULAR
-        notes.append(_note("near-singular-actuators", result, near, text, limit))
+    for code, rows, limit, text in (
+        (
+            "singular-actuators",
+            lost,
+            tolerances.ACTUATORS_AT_REST,
+            f"the actuators {names} are a singular set in {{}}: the mechanism can move there while "
+            "all of them rest; their efforts and the reactions stay empty",
+        ),
+        (
+            "near-singular-actuators",
+            near,
+            1.0 / tolerances.CONDITION_NEAR_SINGULAR,
+            f"the actuators {names} are next to a singular set in {{}}: their efforts are large "
+            "and keep fewer than nine digits",
+        ),
+    ):
+        if rows.any():
+            words = partial(_note, code, text, limit)
+            turn = locked_in(result, rows)
+            marks = [(turn, rows)] if turn else []
+            bad = -np.nan_to_num(least)
+            notes.append(RowNote(code, "warning", "", rows, words, bad, least.__getitem__, marks))
     return notes
 
 
-def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> Diagnostic:
-    least = float(np.min(result.columns[ACTUATION.name][0][rows]))
+def _note(code: str, text: str, limit: float, found: Found) -> Diagnostic:
+    least = float(found.told)
     hint = "put an actuator elsewhere, add one, or keep away from that position"
-    turn = locked_in(result, rows)
+    turn = min(found.marks, default=None)
     locked = (
         f"where {turn} is a quarter turn the turns before and after it go about one axis: that is "
         "a matter of the pose's coordinates, not of the actuators"
@@ -403,7 +433,7 @@ def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> D
     return Diagnostic(
         code,
         "warning",
-        text + (f"; {locked}" if turn else ""),
+        text.format(found.rows) + (f"; {locked}" if turn else ""),
         measured=f"{least:.2g} of the motion",
         limit=f"{limit:.0e}",
         hint=hint,
@@ -411,7 +441,7 @@ def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> D
     )
 
 
-def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:
+def undefined_loads(result: RunRows, lost: Bools) -> list[RowNote]:
     """What to say of the rows (rows,) of a result in which some load has no value.
 
     The laws are evaluated once more, from the same quantities as in the kernel and with the same

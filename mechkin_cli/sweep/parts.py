@@ -22,6 +22,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.row_notes import Notes
 from mechkin_cli.session import Ask, RowInputs, turn_count
 from mechkin_cli.sweep.following import follow_rows, turns_before
 from mechkin_cli.sweep.retracing import closed
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.assembly import AssemblyStart
-    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.row_notes import Note
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep.result import Result
@@ -241,39 +242,7 @@ def _border(session: Session, rows: SweepRows, least: int) -> int:
     return int(sample[best])
 
 
-# What parts say, as the run says it.
-
-MOST_ALIKE = 4
-"""Messages of one kind that a run in parts has at most."""
-
-
-class Notes:
-    """The messages of all parts: each once, and of each kind the first few."""
-
-    def __init__(self) -> None:
-        self._shown: dict[Diagnostic, None] = {}
-        self._counts: dict[str, int] = {}
-        self._last: dict[str, Diagnostic] = {}
-
-    def add(self, notes: Sequence[Diagnostic]) -> None:
-        """Adds those of a part."""
-        for one in notes:
-            if one in self._shown:
-                continue
-            count = self._counts[one.code] = self._counts.get(one.code, 0) + 1
-            if count <= MOST_ALIKE:
-                self._shown[one] = None
-                self._last[one.code] = one
-
-    def found(self) -> list[Diagnostic]:
-        """All that are told."""
-        return [self._counted(one) for one in self._shown]
-
-    def _counted(self, one: Diagnostic) -> Diagnostic:
-        more = self._counts[one.code] - MOST_ALIKE
-        if more <= 0 or one is not self._last[one.code]:
-            return one
-        return one._replace(message=f"{one.message} (and {more} more such messages)")
+# What parts have, as the run has it.
 
 
 class RunVerdicts:
@@ -324,7 +293,7 @@ def joined_rows(parts: Sequence[Part], session: Session) -> SweepRows:
         reached=_joined([each.reached[own] for each, own in found]),
         status=_joined([each.status[own] for each, own in found]),
         nodes=sum(each.nodes for each, _ in found),
-        diagnostics=_merged([each.diagnostics for each, _ in found]),
+        diagnostics=_merged(found, motion.rows),
         numbers=np.arange(motion.rows),
         turns=_joined([each.turns[:, own] for each, own in found]),
         section=_joined([each.section[own] for each, own in found]),
@@ -343,11 +312,11 @@ def joined_rows(parts: Sequence[Part], session: Session) -> SweepRows:
     return rows
 
 
-def _merged(notes: Sequence[Sequence[Diagnostic]]) -> list[Diagnostic]:
-    merged = Notes()
-    for each in notes:
-        merged.add(each)
-    return merged.found()
+def _merged(parts: Sequence[tuple[SweepRows, slice]], run_rows: int) -> list[Note]:
+    merged = Notes(run_rows)
+    for rows, own in parts:
+        merged.add(rows.diagnostics, rows.span.first, own)
+    return [*merged.found()]
 
 
 Scalar = TypeVar("Scalar", bound=np.generic)

@@ -18,6 +18,7 @@ from mechkin_cli import assembly, derived, proofs
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, bearing_load
 from mechkin_cli.plan import REACTION_KINDS, Demand, Readout, demand_of, forces_demand
+from mechkin_cli.row_notes import told
 from mechkin_cli.session import Ask, RowInputs, input_number, input_rest
 from mechkin_cli.sweep.friction import FrictionRows
 from mechkin_cli.sweep.messages import is_held, undefined_loads
@@ -166,8 +167,9 @@ class Result:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """All messages of the run."""
-        own = (*self.start.diagnostics, *self.row_states.diagnostics)
-        return (*self.problem.diagnostics, *own)
+        rows = self.row_states
+        own = told(rows.diagnostics, rows.span.first, rows.span.run_rows)
+        return (*self.problem.diagnostics, *self.start.diagnostics, *own)
 
     @property
     def units(self) -> UnitSystem:

@@ -23,6 +23,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import dataclass, field
+from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Ask, Batch, KernelInputs, continuous_angle
 from mechkin_cli.structure import SolverGraph
 from mechkin_cli.units import FORCE
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.assembly import PlacesBefore
-    from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import Wanted
+    from mechkin_cli.row_notes import Note
     from mechkin_cli.session import Ending, Followed, Session
     from mechkin_cli.show import Bools, Floats
 
@@ -70,7 +71,7 @@ class SweepRows:
     reached: Bools
     status: NDArray[np.int8]
     nodes: int
-    diagnostics: list[Diagnostic]
+    diagnostics: list[Note]
     numbers: NDArray[np.int64]
     turns: Floats
     section: NDArray[np.int64]
@@ -139,33 +140,12 @@ class SweepRows:
         found = np.asarray(rows)
         if found.dtype == np.bool_:
             found = np.flatnonzero(found)
-        return named_rows(found + self.span.first)
+        return str(RowSet.of(found + self.span.first))
 
     @property
     def has_failed(self) -> bool:
         """Whether some row did not close."""
         return bool((self.status == Status.not_converged).any())
-
-
-SHOWN = 6
-"""Ranges of rows that a message names."""
-
-
-def named_rows(rows: Sequence[int] | NDArray[np.intp]) -> str:
-    """Rows, by numbers from 0 that rise, as the numbers from 1 of their ranges.
-
-    Example:
-        >>> named_rows([3, 4, 5, 8])
-        'rows 4 to 6 and 9'
-    """
-    numbers = np.asarray(rows) + 1
-    ranges = np.split(numbers, np.flatnonzero(np.diff(numbers) != 1) + 1)
-    words = [f"{each[0]} to {each[-1]}" if each.size > 1 else f"{each[0]}" for each in ranges]
-    if len(words) > SHOWN:
-        left = sum(each.size for each in ranges[SHOWN:])
-        words[SHOWN:] = [f"{left} more up to row {numbers[-1]}"]
-    first = "row" if numbers.size == 1 else "rows"
-    return f"{first} {' and '.join(filter(None, (', '.join(words[:-1]), words[-1])))}"
 
 
 class RunRows(Protocol):

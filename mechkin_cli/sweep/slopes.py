@@ -8,6 +8,7 @@ of its sides; a motion under forces ends there.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from mechkin_cli.mechanism import ExpressionOf, dimension_of
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.row_notes import Found, RowNote
 from mechkin_cli.session import Ask, RowInputs
 from mechkin_cli.tape import JetNumber, Operation, RowRecorder, orders_of
 from mechkin_cli.tolerances import AT_LIMIT, COURSE_SAME, SLOPE_JUMP
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import CoordinateLaw, Problem, Track, Wanted
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.rows import RunRows, SweepRows
+    from mechkin_cli.sweep.rows import RunRows
     from mechkin_cli.units import Dimension
 
 _CHOICES = {
@@ -152,7 +154,7 @@ def turning_corner(session: Session, state: Floats) -> tuple[Bend, Jump] | None:
     return None
 
 
-def slope_notes(result: RunRows) -> list[Diagnostic]:
+def slope_notes(result: RunRows) -> list[RowNote]:
     """Names the places between the rows at which slopes jump, and the rows there."""
     problem, notes = result.problem, []
     for bend in _bends_of(result.session):
@@ -165,7 +167,13 @@ def slope_notes(result: RunRows) -> list[Diagnostic]:
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
         jumps = jumps_between(bend, *_around(low, high))
         if jumps:
-            notes.append(_note(result.row_states, problem, bend, jumps, values))
+            there = np.zeros(values.shape, dtype=np.bool_)
+            for jump in jumps:
+                there |= np.abs(values - jump.at) <= COURSE_SAME * max(1.0, abs(jump.at))
+            words = partial(_note, problem, bend)
+            marks = [(jump, None) for jump in jumps]
+            about = bend.owner, bend.name
+            notes.append(RowNote("slope-jump", "warning", about, there, words, marks=marks))
     return notes
 
 
@@ -197,19 +205,19 @@ ROUNDED = "round it off, as by sqrt(x^2 + e^2) for abs(x) with a small e"
 """The cure."""
 
 
-def _note(
-    rows: SweepRows, problem: Problem, bend: Bend, jumps: list[Jump], values: Floats
-) -> Diagnostic:
+def _note(problem: Problem, bend: Bend, found: Found) -> Diagnostic:
+    jumps: list[Jump] = []
+    for jump in sorted(found.marks):
+        # one that lies next to a border of parts is found in both
+        if not jumps or jump.at - jumps[-1].at > COURSE_SAME * max(1.0, abs(jump.at)):
+            jumps.append(jump)
     largest = max(jumps, key=lambda jump: jump.size)
     more = f", the largest of {len(jumps)} such jumps" if len(jumps) > 1 else ""
-    there = np.zeros(values.shape, dtype=np.bool_)
-    for jump in jumps:
-        there |= np.abs(values - jump.at) <= COURSE_SAME * max(1.0, abs(jump.at))
     text = f"the slope of {bend.owner} jumps at {place_text(problem, bend, largest.at)}{more}"
-    if there.any():
-        one = np.count_nonzero(there) == 1
+    if found.some_rows is not None:
+        one = found.rows.size == 1
         stands = "stands there and has" if one else "stand there and have"
-        text += f"; {rows.named(there)} {stands} the rates of one side"
+        text += f"; {found.rows} {stands} the rates of one side"
     unit, label = coordinate_unit(problem, bend.name)
     return Diagnostic(
         "slope-jump",

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import DrivenInput, Problem, Wanted
+    from mechkin_cli.row_notes import Note
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.messages import FirstRow
@@ -402,12 +403,10 @@ def _conventional_notes(session: Session, read: tuple[Wanted, ...]) -> list[Diag
     return idle.conventional_notes(session.problem, read)
 
 
-def row_notes(
-    result: Result, asked: Sequence[Wanted], *, rests_on_reactions: bool
-) -> list[Diagnostic]:
+def row_notes(result: Result, asked: Sequence[Wanted], *, rests_on_reactions: bool) -> list[Note]:
     """What is conventional, left open by a full turn, held, or not unique."""
     problem, session, rows = result.problem, result.session, result.row_states
-    notes: list[Diagnostic] = []
+    notes: list[Note] = []
     if problem.has_idle:
         notes += idle.nearly_common_notes(problem)
         read = [*asked, *_read_by_loads(result)]

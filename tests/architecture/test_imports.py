@@ -24,6 +24,7 @@ BASE = {
     "lazy",
     "memo",
     "record",
+    "row_notes",
     "show",
     "tolerances",
     "verdict",

@@ -9,8 +9,8 @@ from errors.test_references import crank_of
 from oracle.numerics import mpmath_context as mp
 
 import mechkin_cli as mk
+from mechkin_cli.row_notes import RowSet
 from mechkin_cli.sweep import dead_centre
-from mechkin_cli.sweep.rows import named_rows
 from mechkin_cli.tape import TraceLost
 
 PLACES = ["0", "10", "39.93", "39.931180949", "39.9311809496", "39.93118094965"]
@@ -67,7 +67,7 @@ def test_the_worst_row_is_named():
     ],
 )
 def test_rows_are_named_by_their_ranges(rows: list[int], words: str):
-    assert named_rows(rows) == words
+    assert str(RowSet.of(rows)) == words
 
 
 def test_what_is_not_measured_is_said(monkeypatch: pytest.MonkeyPatch):

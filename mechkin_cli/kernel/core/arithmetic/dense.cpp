@@ -23,10 +23,9 @@ void with_size(int n, F&& f) {
 
 // LeastSquares::solve for all columns of x at once, N x N or, with 0, of any size; the first rows are the solution.
 template <int N>
-void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& betas, Matrix* solution) {
-  const int m = N ? N : matrix.rows, n = N ? N : matrix.columns, columns = N ? N : solution->columns;
+void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& betas, double* x, int x_columns) {
+  const int m = N ? N : matrix.rows, n = N ? N : matrix.columns, columns = N ? N : x_columns;
   const double *const a = matrix.a.begin(), *const pivot = pivots.begin(), *const beta = betas.begin();
-  double* const x = solution->a.begin();
   Entries sums(N ? 0 : columns);
   double sized[N ? N : 1];
   double* const sum = N ? sized : sums.begin();
@@ -88,15 +87,51 @@ double inverse_square(const Matrix& matrix, const Entries& pivots) {
   return square;
 }
 
+// The square of a matrix, N x N or of n x n, into another.
 template <int N>
-void square_into(const Matrix& e, Matrix* product) {
-  const int n = N ? N : e.rows;
-  const double* const a = e.a.begin();
-  double* const out = product->a.begin();
+void square_into(const double* a, int size, double* out) {
+  const int n = N ? N : size;
+  for (int e = 0; e < n * n; ++e) out[e] = 0.0;
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < n; ++k)
       for (int j = 0; j < n; ++j) out[i * n + j] += a[i * n + k] * a[k * n + j];
 }
+
+// Calls use(bound) with one bound of the spectral radius after the other until it says that this is enough. `power` holds
+// the matrix, and `room` takes as many numbers; both change. The powers are kept near 1: bounds as 2^-k of the logarithm
+// would need one, roots do not.
+template <int N, class Use>
+void spectral_bounds(double* power, double* room, int size, Use&& use) {
+  const int entries = N ? N * N : size * size;
+  double scale = 1.0;  // of the power so far: |E^(2^k)|^(1/2^k) = scale |power|^(1/2^k)
+  for (int k = 0;; ++k) {
+    double square = 0.0;
+    for (int e = 0; e < entries; ++e) square += power[e] * power[e];
+    const double norm = std::sqrt(square);
+    if (!(norm < HUGE_VAL)) return;
+    double root = norm;
+    for (int i = 0; i < k; ++i) root = std::sqrt(root);
+    if (use(scale * root) || k == 5 || norm == 0.0) return;
+    for (int e = 0; e < entries; ++e) power[e] /= norm;
+    scale *= root;
+    square_into<N>(power, size, room);
+    std::swap(power, room);
+  }
+}
+// What takes the bounds: whether one is within a limit, and the least of them.
+struct Within {
+  double limit;
+  bool found = false;
+  bool operator()(double bound) { return found = bound <= limit; }
+};
+struct Least {
+  double found = HUGE_VAL;
+  bool operator()(double bound) {
+    const bool enough = bound > 0.9 * found;
+    found = lesser(found, bound);
+    return enough;
+  }
+};
 
 }  // namespace
 
@@ -125,13 +160,44 @@ Matrix LeastSquares::solve(const Matrix& b) const {
   const int n = a_.columns;
   Matrix x = b;
   if (a_.rows == n && b.columns == n) {
-    with_size(n, [&](auto size) { solve_columns<size()>(a_, pivot_, beta_, &x); });
+    with_size(n, [&](auto size) { solve_columns<size()>(a_, pivot_, beta_, x.a.begin(), n); });
     return x;
   }
-  solve_columns<0>(a_, pivot_, beta_, &x);
+  solve_columns<0>(a_, pivot_, beta_, x.a.begin(), x.columns);
   Matrix solution(n, b.columns);
   std::copy(x.a.begin(), x.a.begin() + solution.a.size(), solution.a.begin());
   return solution;
+}
+
+// Small square matrices stay on the stack, with sizes that are known.
+template <class Use>
+void LeastSquares::bound_change(const Matrix& b, Use& use) const {
+  with_size(a_.rows == a_.columns ? a_.columns : 0, [&](auto size) {
+    constexpr int N = size();
+    if constexpr (N > 0) {
+      double power[N * N], room[N * N];
+      std::copy(b.a.begin(), b.a.end(), power);
+      solve_columns<N>(a_, pivot_, beta_, power, N);
+      for (int i = 0; i < N; ++i) power[i * N + i] -= 1.0;
+      spectral_bounds<N>(power, room, N, use);
+    } else {
+      Matrix change = solve(b), room(change.rows, change.rows);
+      subtract_identity(&change);
+      spectral_bounds<0>(change.a.begin(), room.a.begin(), change.rows, use);
+    }
+  });
+}
+
+bool LeastSquares::change_within(const Matrix& b, double limit) const {
+  Within within = {limit};
+  bound_change(b, within);
+  return within.found;
+}
+
+double LeastSquares::change_bound(const Matrix& b) const {
+  Least least;
+  bound_change(b, least);
+  return least.found;
 }
 
 double LeastSquares::least_pivot() const {
@@ -147,53 +213,18 @@ double LeastSquares::least_singular_bound() const {
   return square > 0.0 ? 1.0 / std::sqrt(square) : n ? 0.0 : HUGE_VAL;
 }
 
-namespace {
-
-double norm(const Matrix& e) {
-  double square = 0.0;
-  for (double x : e.a) square += x * x;
-  return std::sqrt(square);
-}
-
-Matrix squared(const Matrix& e) {
-  Matrix product(e.rows, e.rows);
-  with_size(e.rows, [&](auto size) { square_into<size()>(e, &product); });
-  return product;
-}
-
-// Calls use(bound) with one bound after the other until it says that this is enough. The powers are kept near 1: bounds
-// as 2^-k of the logarithm would need one, roots do not.
-template <class Use>
-void spectral_bounds(Matrix e, Use&& use) {
-  double scale = 1.0;  // of the power so far: |E^(2^k)|^(1/2^k) = scale |power|^(1/2^k)
-  for (int k = 0;; ++k) {
-    const double size = norm(e);
-    if (!(size < HUGE_VAL)) return;
-    double root = size;
-    for (int i = 0; i < k; ++i) root = std::sqrt(root);
-    if (use(scale * root) || k == 5 || size == 0.0) return;
-    for (double& x : e.a) x /= size;
-    scale *= root;
-    e = squared(e);
-  }
-}
-
-}  // namespace
-
 bool spectral_radius_within(Matrix e, double limit) {
-  bool within = false;
-  spectral_bounds(std::move(e), [&](double bound) { return within = bound <= limit; });
-  return within;
+  Within within = {limit};
+  Matrix room = e;
+  with_size(e.rows, [&](auto size) { spectral_bounds<size()>(e.a.begin(), room.a.begin(), e.rows, within); });
+  return within.found;
 }
 
 double spectral_radius_bound(Matrix e) {
-  double least = HUGE_VAL;
-  spectral_bounds(std::move(e), [&](double bound) {
-    const bool enough = bound > 0.9 * least;
-    least = std::fmin(least, bound);
-    return enough;
-  });
-  return least;
+  Least least;
+  Matrix room = e;
+  with_size(e.rows, [&](auto size) { spectral_bounds<size()>(e.a.begin(), room.a.begin(), e.rows, least); });
+  return least.found;
 }
 
 Singular singular_vectors(Matrix a) {

@@ -53,12 +53,18 @@ class LeastSquares {
   std::vector<double> solve(std::vector<double> b) const;
   // A^+ B.
   Matrix solve(const Matrix& b) const;
+  // Bounds of the spectral radius of A^+ B - I, as those of a matrix below.
+  bool change_within(const Matrix& b, double limit) const;
+  double change_bound(const Matrix& b) const;
   // Size of the least pivot: zero where columns are dependent.
   double least_pivot() const;
   // 1 / |A^+| in Frobenius' norm: at most the least singular value, and at least it over the root of the columns.
   double least_singular_bound() const;
 
  private:
+  template <class Use>
+  void bound_change(const Matrix& b, Use& use) const;
+
   Matrix a_;
   Entries pivot_, beta_;
 };
@@ -76,6 +82,10 @@ struct Factored {
 bool spectral_radius_within(Matrix e, double limit);
 // The same bound, as near as powers still lower it by a tenth.
 double spectral_radius_bound(Matrix e);
+
+// As fmin and fmax, which are calls: what is no number loses.
+inline double lesser(double a, double b) { return a < b || b != b ? a : b; }
+inline double greater(double a, double b) { return a > b || b != b ? a : b; }
 
 // Singular values, falling, with the right singular vectors as columns of `v`, by one-sided Jacobi rotations.
 struct Singular {

@@ -5,6 +5,7 @@
 #include "rows/condition.hpp"
 #include "arithmetic/elementwise.hpp"
 #include "rows/row_run.hpp"
+#include "rows/interpolation.hpp"
 #include "rows/search.hpp"
 #if MECHKIN_LANES == 2  // one set of inputs at a time: the narrowest unit does for all
 #include "tape/tape_jets.hpp"
@@ -50,7 +51,7 @@ constexpr void (*replay_jets)(const Tape&, const double*, const double*, double*
 #endif
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, prepare, run_row, run_rows,
-                         search_rows, elementwise, replay_size, replay, jets_size, replay_jets};
+                         search_rows, elementwise, interpolate, replay_size, replay, jets_size, replay_jets};
 
 }  // namespace
 

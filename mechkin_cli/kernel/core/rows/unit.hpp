@@ -15,6 +15,19 @@ struct PairType {
   int coordinates, turns;  // bit f: freedom f is a coordinate; is one and an angle
 };
 
+// Rows between two places of a curve, a step apart: of each column a polynomial of degree five, by its value and its first
+// and second derivative at both places.
+struct Hermite {
+  double begin, step;
+  long rows;
+  const double* place;  // rows
+  int columns;
+  const double* ends;   // columns x 6: value, first and second derivative where the step begins, the same where it ends
+  double* const* out;   // columns: rows each
+  double* const* whole;  // columns: null, or rows of whole turns, in whose rows `out` is within half a turn
+  const double* counted;  // columns: turns that all of these have besides
+};
+
 struct KernelUnit {
   int lanes;
   const TreeType* tree_types;  // TREE_CODES
@@ -28,6 +41,7 @@ struct KernelUnit {
   void (*run_rows)(const Plan&, const Request&, long begin, long end, char* workspace);
   void (*search_rows)(const Plan&, const SearchRequest&, long begin, long end, char* workspace);
   void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
+  void (*interpolate)(const Hermite&);
   long (*replay_size)(const Tape&);
   void (*replay)(const Tape&, const TapeRequest&, char* workspace);
   // Of one set of inputs, with first and second derivatives by the first of them (tape_jets.hpp): of the narrowest unit,

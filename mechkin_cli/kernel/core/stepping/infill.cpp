@@ -1,56 +1,40 @@
 // What the rows between two nodes get: quintic Hermite interpolation of values, first and second derivatives.
+#include <algorithm>
 #include <cmath>
 
+#include "rows/units.hpp"
 #include "stepping/orbit.hpp"
 #include "stepping/row_curve.hpp"
 
-// The turns of the loop behind it share no memory.
-#if defined(__clang__)
-#define MECHKIN_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#else
-#define MECHKIN_INDEPENDENT _Pragma("GCC ivdep")
-#endif
-
 namespace {
 
-// A value with its first and second derivative at both ends of a step h.
-struct Ends {
-  double from[3], to[3];
-};
-
-// Weights of the values and derivatives at both ends (0: from, 1: to) at parts t of a step of length 1, one row after the
-// other for each weight.
-class Hermite {
+// Columns of the rows between two nodes, which the widest unit interpolates some at a time.
+class RowsBetween {
  public:
-  Hermite(const Node& a, const Node& b, const double* place, long count) : count_(count), weight_(6 * count) {
-    const double begin = a.place, step = b.place - a.place;
-    double *const value0 = part(0), *const value1 = part(1), *const first0 = part(2), *const first1 = part(3),
-           *const second0 = part(4), *const second1 = part(5);
-    MECHKIN_INDEPENDENT
-    for (long i = 0; i < count; ++i) {
-      const double t = (place[i] - begin) / step, t2 = t * t, t3 = t2 * t;
-      value0[i] = 1 - t3 * (10 - t * (15 - 6 * t)), first0[i] = t - t3 * (6 - t * (8 - 3 * t));
-      second0[i] = 0.5 * t2 * (1 - t * (3 - t * (3 - t))), value1[i] = 1 - value0[i];
-      first1[i] = -t3 * (4 - t * (7 - 3 * t)), second1[i] = 0.5 * t3 * (1 - t * (2 - t));
-    }
+  RowsBetween(const Node& a, const Node& b, const double* place, long rows)
+      : curve_{a.place, b.place - a.place, rows, place, 0, ends_, out_, whole_, counted_} {}
+  RowsBetween(const RowsBetween&) = delete;
+  // A value with its first and second derivative at both nodes; `out`: rows. `whole`, `counted`: as in Hermite.
+  void add(double value0, double first0, double second0, double value1, double first1, double second1, double* out,
+           double* whole = nullptr, double counted = 0.0) {
+    if (curve_.columns == MOST_COLUMNS) interpolate();
+    const int k = curve_.columns++;
+    double* const ends = ends_ + 6 * k;
+    ends[0] = value0, ends[1] = first0, ends[2] = second0, ends[3] = value1, ends[4] = first1, ends[5] = second1;
+    out_[k] = out, whole_[k] = whole, counted_[k] = counted;
   }
-  void interpolate(double h, const Ends& e, double* out) const {
-    const double *const value0 = part(0), *const value1 = part(1), *const first0 = part(2), *const first1 = part(3),
-                 *const second0 = part(4), *const second1 = part(5);
-    const Ends ends = e;
-    MECHKIN_INDEPENDENT
-    for (long i = 0; i < count_; ++i)
-      out[i] = value0[i] * ends.from[0] + value1[i] * ends.to[0] +
-               h * (first0[i] * ends.from[1] + first1[i] * ends.to[1]) +
-               h * h * (second0[i] * ends.from[2] + second1[i] * ends.to[2]);
+  // What was added since the last time.
+  void interpolate() {
+    if (curve_.columns) kernel_unit()->interpolate(curve_);
+    curve_.columns = 0;
   }
 
  private:
-  double* part(int k) { return weight_.data() + k * count_; }
-  const double* part(int k) const { return weight_.data() + k * count_; }
+  static constexpr int MOST_COLUMNS = 16;
 
-  long count_;
-  std::vector<double> weight_;
+  double ends_[6 * MOST_COLUMNS], counted_[MOST_COLUMNS];
+  double *out_[MOST_COLUMNS], *whole_[MOST_COLUMNS];
+  Hermite curve_;
 };
 
 // The same orientation by the opposite quaternion.
@@ -64,49 +48,42 @@ void negate(Node* node, int slot) {
 void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
             const RowGuesses& out, const Chosen* chosen) {
   const int states = stepper.plan().states;
-  const double h = b.place - a.place;
-  double distance = h;
-  for (int s = 0; s < states; ++s) distance = std::fmax(distance, std::fabs(b.state[s] - a.state[s]));
+  double distance = b.place - a.place;
+  for (int s = 0; s < states; ++s) distance = greater(distance, std::fabs(b.state[s] - a.state[s]));
   // a row nearer to a singular place than eight times its correction may have crossed it
   const double limit = std::fmin(stepper.limits().infill * distance, 0.125 * std::fmin(a.least, b.least));
-  for (long row = begin; row < end; ++row) out.limit[row] = limit;
-  const Hermite rows(a, b, place, end - begin);
-  for (int s = 0; s < states; ++s)
-    if (!chosen || chosen->state[s])
-      rows.interpolate(h, {{a.state[s], a.state_first[s], a.state_second[s]},
-                           {b.state[s], b.state_first[s], b.state_second[s]}},
-                       out.guess + s * out.rows + begin);
-  stepper.normalise_quaternions(out.guess + begin, out.rows, end - begin);
-  if (!out.turn) return;
-  for (const ClosingTurn& t : stepper.turns())
-    for (int s = t.slot; s < t.slot + t.width; ++s)
-      if (!chosen || chosen->slot[s])
-        rows.interpolate(h, {{a.turn[s], a.turn_first[s], a.turn_second[s]},
-                             {b.turn[s], b.turn_first[s], b.turn_second[s]}},
-                         out.turn + s * out.rows + begin);
-  for (const TreeTurn& t : stepper.tree_turns()) {
-    if (chosen && !chosen->slot[t.slot]) continue;
-    for (long row = begin; row < end; ++row) {
-      double& state = out.guess[t.state * out.rows + row];
-      const double whole = std::rint(state / FULL_TURN);
-      state -= FULL_TURN * whole;
-      out.turn[t.slot * out.rows + row] = a.turn[t.slot] + whole;
-    }
+  std::fill(out.limit + begin, out.limit + end, limit);
+  if (begin == end) return;
+  RowsBetween rows(a, b, place, end - begin);
+  for (int s = 0; s < states; ++s) {
+    if (chosen && !chosen->state[s]) continue;
+    const int slot = out.turn ? stepper.turn_of_state()[s] : -1;
+    rows.add(a.state[s], a.state_first[s], a.state_second[s], b.state[s], b.state_first[s], b.state_second[s],
+             out.guess + s * out.rows + begin, slot < 0 ? nullptr : out.turn + slot * out.rows + begin,
+             slot < 0 ? 0.0 : a.turn[slot]);
   }
+  for (const ClosingTurn& t : stepper.turns())
+    for (int s = t.slot; out.turn && s < t.slot + t.width; ++s)
+      if (!chosen || chosen->slot[s])
+        rows.add(a.turn[s], a.turn_first[s], a.turn_second[s], b.turn[s], b.turn_first[s], b.turn_second[s],
+                 out.turn + s * out.rows + begin);
+  rows.interpolate();
+  stepper.normalise_quaternions(out.guess + begin, out.rows, end - begin);
 }
 
 double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
              const double* inputs, long stride) {
   const Plan& plan = stepper.plan();
-  const Hermite rows(a, b, place, count);
-  std::vector<double> along(count);
-  double worst = 0.0;
+  std::vector<double> along(plan.inputs * count);
+  RowsBetween rows(a, b, place, count);
   for (int i = 0; i < plan.inputs; ++i) {
     const int c = plan.input_column[i];
-    rows.interpolate(b.place - a.place,
-                     {{a.inputs[i], a.first[c], a.second[c]}, {b.inputs[i], b.first[c], b.second[c]}}, along.data());
-    for (long k = 0; k < count; ++k) worst = std::fmax(worst, std::fabs(along[k] - inputs[i * stride + k]));
+    rows.add(a.inputs[i], a.first[c], a.second[c], b.inputs[i], b.first[c], b.second[c], &along[i * count]);
   }
+  rows.interpolate();
+  double worst = 0.0;
+  for (int i = 0; i < plan.inputs; ++i)
+    for (long k = 0; k < count; ++k) worst = greater(worst, std::fabs(along[i * count + k] - inputs[i * stride + k]));
   return worst;
 }
 

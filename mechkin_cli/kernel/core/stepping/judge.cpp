@@ -5,6 +5,7 @@
 // is singular. The radius changes neither with units, nor with the order or merging of blocks; a sign of a determinant
 // comes back where two factors change together. What is shown is a segment of matrices, not the true path
 // (docs/numerics.md).
+#include <algorithm>
 #include <cmath>
 
 #include "stepping/stepper.hpp"
@@ -19,25 +20,17 @@ constexpr double NARROW = 1e-3;
 bool is_regular_segment(const Factored& a, const Matrix& middle, const Factored& b, double limit, double* danger,
                         double* least) {
   const LeastSquares &from = a.squares, &to = b.squares;
-  *least = std::fmin(*least, to.least_singular_bound());
-  const auto difference = [](const LeastSquares& at, const Matrix& other) {
-    Matrix e = at.solve(other);
-    subtract_identity(&e);
-    return e;
-  };
-  *danger = spectral_radius_bound(difference(to, a.matrix));
-  if (!(*danger <= limit) && !spectral_radius_within(difference(to, a.matrix), limit) &&
-      !spectral_radius_within(difference(from, b.matrix), limit))
-    return false;
-  return spectral_radius_within(difference(from, middle), limit) &&
-         spectral_radius_within(difference(to, middle), limit);
+  *least = lesser(*least, to.least_singular_bound());
+  *danger = to.change_bound(a.matrix);
+  if (!(*danger <= limit) && !to.change_within(a.matrix, limit) && !from.change_within(b.matrix, limit)) return false;
+  return from.change_within(middle, limit) && to.change_within(middle, limit);
 }
 
 Matrix Stepper::block_matrix(const std::vector<double>& jacobian, int block) const {
   long at = 0;
   for (int b = 0; b < block; ++b) at += plan_.block[b].rows * plan_.block[b].size;
   Matrix matrix(plan_.block[block].rows, plan_.block[block].size);
-  for (std::size_t e = 0; e < matrix.a.size(); ++e) matrix.a[e] = jacobian[at + e];
+  std::copy_n(jacobian.begin() + at, matrix.a.size(), matrix.a.begin());
   return matrix;
 }
 
@@ -76,7 +69,7 @@ bool Stepper::same_side(const Node& a, Node* b) {
     double danger = 0.0;
     same = is_regular_segment(from[k], block_matrix(half_way_, k), to[k], limits_.radius, &danger,
                               &b->singular[k]) && same;
-    b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);
+    b->danger[k] = danger / std::fabs(h), b->least = lesser(b->least, b->singular[k]);
   }
   return same;
 }

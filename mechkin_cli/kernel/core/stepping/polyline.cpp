@@ -115,7 +115,7 @@ class RowFollower {
     result_.reached = piece.last + 1;
   }
 
-  // Places of rows on a straight way: whole turns of the leading input, and the rest.
+  // Places of rows on a straight way: whole turns of the leading input, none where it does not turn for ever, and the rest.
   struct Places {
     std::vector<long> turn;
     std::vector<double> rest;
@@ -123,10 +123,12 @@ class RowFollower {
   // Of rows (first, last], from `first` on.
   Places places_of(long first, long last, int leading, double sense) const {
     const long count = last - first;
-    Places places = {std::vector<long>(count, 0), std::vector<double>(count)};
+    Places places = {std::vector<long>(cyclic_[leading] ? count : 0), std::vector<double>(count)};
     const double from = rows_.at(leading, first);
     if (!cyclic_[leading]) {
-      for (long k = 0; k < count; ++k) places.rest[k] = std::fabs(rows_.at(leading, first + 1 + k) - from);
+      rows_.each(leading, first + 1, last + 1, [&](long row, double x) {
+        return places.rest[row - first - 1] = std::fabs(x - from), true;
+      });
       return places;
     }
     const double *value = rows_.values + leading * rows_.rows, *whole = rows_.whole + leading * rows_.rows;
@@ -148,7 +150,7 @@ class RowFollower {
     std::vector<double> x0 = origin;
     long row = first + 1;
     for (long turn = 0;; ++turn) {
-      long stop = row;
+      long stop = places.turn.empty() ? last + 1 : row;
       while (stop <= last && places.turn[stop - first - 1] <= turn) ++stop;
       const double* const sigma = places.rest.data() + (row - first - 1);
       const bool goes_on = stop <= last;

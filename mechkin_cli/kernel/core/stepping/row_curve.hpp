@@ -19,6 +19,18 @@ struct InputRows {
     const long k = input * rows + row;
     return whole ? values[k] + FULL_TURN * whole[k] : values[k];
   }
+  // Calls use(row, value) for rows [begin, end) of an input, in order, until it says no.
+  template <class Use>
+  void each(int input, long begin, long end, Use&& use) const {
+    const double *const value = values + input * rows, *const turn = whole ? whole + input * rows : nullptr;
+    if (still[input] || turn) {
+      for (long row = begin; row < end && use(row, at(input, row)); ++row) {
+      }
+      return;
+    }
+    for (long row = begin; row < end && use(row, value[row]); ++row) {
+    }
+  }
   double distance(long one, long other) const;
   // Cosine of the turn of the path at a row between two others; 1 where it rests, NaN beside a row that is no number.
   double turn_cosine(long row) const;

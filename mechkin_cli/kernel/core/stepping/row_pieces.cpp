@@ -9,8 +9,11 @@ constexpr double ROUNDING = 0x1p-50;  // some units in the last place
 
 RowPieces::RowPieces(const InputRows& rows, const StepLimits& limits, const Course* course)
     : rows_(rows), limits_(limits), course_(course), scale_(rows.inputs, 0.0) {
-  for (int i = 0; i < rows.inputs; ++i)
-    for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
+  for (int i = 0; i < rows.inputs; ++i) {
+    double size = 0.0;
+    rows.each(i, 0, rows.rows, [&size](long, double x) { return size = greater(size, std::fabs(x)), true; });
+    scale_[i] = size;
+  }
 }
 
 bool RowPieces::direction_from(long row, std::vector<double>* u, int* leading) const {
@@ -31,10 +34,20 @@ bool RowPieces::direction_from(long row, std::vector<double>* u, int* leading) c
 long RowPieces::end_of_line(long first, long end, const std::vector<double>& u, int leading) const {
   double before = 0.0;
   long row = first + 1;
+  if (rows_.inputs == 1) {
+    const double begin = rows_.at(0, first), sense = u[0];
+    rows_.each(0, row, end + 1, [&](long, double x) {
+      const double along = (x - begin) * sense;
+      if (!(along > before)) return false;
+      before = along, ++row;
+      return true;
+    });
+    return std::max(row - 1, first + 1);
+  }
   for (; row <= end; ++row) {
     const double along = (rows_.at(leading, row) - rows_.at(leading, first)) * u[leading];
     bool onward = along > before;
-    for (int i = 0; onward && rows_.inputs > 1 && i < rows_.inputs; ++i) {
+    for (int i = 0; onward && i < rows_.inputs; ++i) {
       const double off = rows_.at(i, row) - (rows_.at(i, first) + u[i] * along);
       onward = std::fabs(off) <= limits_.same_line * (1.0 + scale_[i]);
     }

@@ -53,7 +53,8 @@ int turn_slots(const Plan& plan, const KernelUnit& unit) {
 Stepper::Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits)
     : path_(path), plan_(path.plan(0.0)), unit_(unit), limits_(limits), memory_(unit.workspace_size(plan_)),
       turns_(closing_turns(plan_, unit)), tree_turns_(::tree_turns(plan_, unit)),
-      turn_slots_(::turn_slots(plan_, unit)) {
+      turn_of_state_(plan_.states, -1), turn_slots_(::turn_slots(plan_, unit)) {
+  for (const TreeTurn& t : tree_turns_) turn_of_state_[t.state] = t.slot;
   unit.prepare(plan_, memory_.data());
   for (int b = 0; b < plan_.blocks; ++b) entries_ += plan_.block[b].rows * plan_.block[b].size;
 }
@@ -171,15 +172,15 @@ bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
 double Stepper::wanted_step(const Node& n) const {
   double b2 = n.own_second * n.own_second, along = n.own * n.own_second, most = longest_step(n);
   // a fifth less than what would be refused
-  for (double danger : n.danger) most = std::fmin(most, 0.8 * limits_.radius / danger);
+  for (double danger : n.danger) most = lesser(most, 0.8 * limits_.radius / danger);
   for (double s : n.second) b2 += s * s;
   if (b2 == 0.0) return most;
   const double t2 = tangent_product(n, n);
   for (std::size_t i = 0; i < n.first.size(); ++i) along += n.first[i] * n.second[i];
-  const double across = std::sqrt(std::fmax(b2 - along * along / t2, 0.0));
+  const double across = std::sqrt(greater(b2 - along * along / t2, 0.0));
   const double by_bend = limits_.bend * std::sqrt(t2 / b2);
   const double by_turn = across > 0.0 ? limits_.turn * std::sqrt(t2) / across : HUGE_VAL;
-  return std::fmin(most, std::fmin(by_bend, by_turn));
+  return lesser(most, lesser(by_bend, by_turn));
 }
 
 // The step in which no input moves farther than it may: s h + b h^2 / 2 with the fastest one's derivatives.

@@ -142,6 +142,8 @@ class Stepper {
   const StepLimits& limits() const { return limits_; }
   const std::vector<ClosingTurn>& turns() const { return turns_; }
   const std::vector<TreeTurn>& tree_turns() const { return tree_turns_; }
+  // States: the slot of its whole turns, -1 where it has none.
+  const std::vector<int>& turn_of_state() const { return turn_of_state_; }
   // Brings the tree's angles within half a turn and counts what was taken off.
   void reduce(Node* node) const;
   int turn_slots() const { return turn_slots_; }
@@ -185,6 +187,7 @@ class Stepper {
 
   std::vector<ClosingTurn> turns_;
   std::vector<TreeTurn> tree_turns_;
+  std::vector<int> turn_of_state_;
   int turn_slots_ = 0;
   long entries_ = 0;
   std::vector<char> upstream_;  // blocks x blocks, where it was needed

@@ -88,21 +88,21 @@ class Tracker {
         track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}}, has_kinks_(has_kinks(stepper_.plan().functions)) {}
 
   Track follow(double begin, double end, const double* start, const std::vector<double>& turn) {
-    if (!stepper_.close(begin, start, &node_)) {
+    if (!stepper_.close(begin, start, node_)) {
       track_.end = TrackEnd::start_not_closed;
       return std::move(track_);
     }
-    if (!turn.empty()) adopt_turns(stepper_, turn, &node_);
-    reduce(&node_);
-    for (; row_ < rows_ && sigma_[row_] <= begin; ++row_) put_row(node_, limits_.jump, first_ + row_, out_);
+    if (!turn.empty()) adopt_turns(stepper_, turn, node_);
+    reduce(node_);
+    for (; row_ < rows_ && sigma_[row_] <= begin; ++row_) put_row(*node_, limits_.jump, first_ + row_, out_);
     end_ = end;
-    step_ = stepper_.wanted_step(node_);
+    step_ = stepper_.wanted_step(*node_);
     // longest steps alone would be too many
     if (!(end_ - begin <= MOST_PATH_STEPS * limits_.longest_step)) track_.end = TrackEnd::exhausted;
-    while (track_.end == TrackEnd::finished && node_.sigma < end_ && go_on()) {
+    while (track_.end == TrackEnd::finished && node_->sigma < end_ && go_on()) {
     }
     track_.reached = row_;
-    track_.last = std::move(node_);
+    track_.last = std::move(*node_);
     return std::move(track_);
   }
 
@@ -111,24 +111,24 @@ class Tracker {
     track_.end = end, track_.refused_step = refused;
     // what was seen ahead ended the branch only if it came there
     for (const Limit& seen : seen_)
-      if (refused > 0.0 && std::fabs(seen.at.sigma - node_.sigma) <= NEAR_LIMIT) track_.limit = seen;
+      if (refused > 0.0 && std::fabs(seen.at.sigma - node_->sigma) <= NEAR_LIMIT) track_.limit = seen;
     return false;
   }
 
   bool go_on() {
-    if (!progress_.goes_on(node_.sigma)) return stop(TrackEnd::exhausted, 0.0);
-    const double least = limits_.least_step * std::fmax(1.0, std::fabs(node_.sigma));
-    if (end_ - node_.sigma <= AT_END * largest()) return arrive();
+    if (!progress_.goes_on(node_->sigma)) return stop(TrackEnd::exhausted, 0.0);
+    const double least = limits_.least_step * std::fmax(1.0, std::fabs(node_->sigma));
+    if (end_ - node_->sigma <= AT_END * largest()) return arrive();
     // the last step ends exactly on the last row
     // a rest of a millionth of a step is taken along
-    const bool last = node_.sigma + 1.000001 * step_ >= end_;
-    const double h = last ? end_ - node_.sigma : step_;
+    const bool last = node_->sigma + 1.000001 * step_ >= end_;
+    const double h = last ? end_ - node_->sigma : step_;
     if (!last && h < least) return stop(TrackEnd::stalled, h);
     if (h * speed() < limits_.narrow && !last && looks()) return look();
-    Node& next = next_;
-    if (steps_to(node_, h, last ? end_ : node_.sigma + h, &next)) {
+    Node& next = *spare_;
+    if (steps_to(*node_, h, last ? end_ : node_->sigma + h, &next)) {
       advance(next);
-      step_ = std::fmin(stepper_.wanted_step(node_), 4.0 * h);
+      step_ = std::fmin(stepper_.wanted_step(*node_), 4.0 * h);
       looks_ = looks_ || step_ * speed() >= limits_.narrow;
       return true;
     }
@@ -149,13 +149,16 @@ class Tracker {
     ++track_.steps;
     const long from = row_;
     while (row_ < rows_ && sigma_[row_] <= next.sigma) ++row_;
-    infill(stepper_, node_, next, sigma_ + from, first_ + from, first_ + row_, out_);
+    infill(stepper_, *node_, next, sigma_ + from, first_ + from, first_ + row_, out_);
     go_to(next);
   }
   void go_to(Node& next) {
     if (kept_) keep(next);
     reduce(&next);
-    std::swap(node_, next);
+    if (&next == spare_)
+      std::swap(node_, spare_);
+    else
+      *node_ = std::move(next);
   }
 
   // Over a place within a refused step at which the slope of a function jumps, if that is what refuses it: steps up to it, and
@@ -163,7 +166,7 @@ class Tracker {
   bool over_kink(double h) {
     std::vector<Node> way;
     for (int tries = 0; h * speed() > KINK_STEP; ++tries) {
-      const Node& from = way.empty() ? node_ : way.back();
+      const Node& from = way.empty() ? *node_ : way.back();
       Node next;
       if (tries >= KINK_TRIES || !(from.sigma + 0.5 * h < end_)) return false;
       if (steps_to(from, 0.5 * h, from.sigma + 0.5 * h, &next))
@@ -171,7 +174,7 @@ class Tracker {
       else
         h *= 0.5;
     }
-    const Node before = way.empty() ? node_ : way.back();
+    const Node before = way.empty() ? *node_ : way.back();
     const double sigma = std::fmin(before.sigma + 2.0 * h, end_), step = sigma - before.sigma;
     Node behind;
     std::vector<double> guess;
@@ -195,22 +198,22 @@ class Tracker {
       put_row(at, limits_.jump, first_ + row_++, out_);
     }
     go_to(behind);
-    step_ = stepper_.wanted_step(node_);
+    step_ = stepper_.wanted_step(*node_);
     return true;
   }
 
   // What is left of the way is a rounding, as it is of a whole turn: no step is that short.
   bool arrive() {
-    const double limit = std::fmin(limits_.jump, 0.125 * node_.least);
-    for (; row_ < rows_ && sigma_[row_] <= end_; ++row_) put_row(node_, limit, first_ + row_, out_);
-    node_.sigma = end_;
+    const double limit = std::fmin(limits_.jump, 0.125 * node_->least);
+    for (; row_ < rows_ && sigma_[row_] <= end_; ++row_) put_row(*node_, limit, first_ + row_, out_);
+    node_->sigma = end_;
     return false;
   }
 
   // The largest number of the node that rounds: its place on the path, or a state.
   double largest() const {
-    double most = std::fmax(1.0, std::fabs(node_.sigma));
-    for (double state : node_.state) most = std::fmax(most, std::fabs(state));
+    double most = std::fmax(1.0, std::fabs(node_->sigma));
+    for (double state : node_->state) most = std::fmax(most, std::fabs(state));
     return most;
   }
 
@@ -219,7 +222,7 @@ class Tracker {
     if (out_.turn) stepper_.reduce(node);
   }
   void keep(const Node& next) {
-    kept_->push_back({node_, next});
+    kept_->push_back({*node_, next});
     // rows need no Jacobians, which are the largest part of a node
     for (Node* node : {&kept_->back().from, &kept_->back().to}) node->jacobian = {}, node->factored = {};
   }
@@ -229,7 +232,7 @@ class Tracker {
   double speed() const {
     double square = 0.0;
     for (int i = 0; i < plan().inputs; ++i) {
-      const double rate = node_.first[plan().input_column[i]];
+      const double rate = node_->first[plan().input_column[i]];
       square += rate * rate;
     }
     return square > 0.0 ? std::sqrt(square) : 1.0;
@@ -237,12 +240,12 @@ class Tracker {
 
   // What refuses the steps, by arclength.
   bool look() {
-    const Stretch stretch = walk_stretch(path_, unit_, limits_, node_, step_, end_);
+    const Stretch stretch = walk_stretch(path_, unit_, limits_, *node_, step_, end_);
     track_.steps += stretch.steps, track_.rejected += stretch.rejected;
     const PassageEnd kind = stretch.end();
     const bool ends = kind == PassageEnd::dead_centre || kind == PassageEnd::branch_point;
     if (stretch.last().unbounded) {
-      node_ = stretch.last().nodes.back();
+      *node_ = stretch.last().nodes.back();
       return stop(TrackEnd::stalled, 0.0);
     }
     note_ends(stretch);
@@ -251,7 +254,7 @@ class Tracker {
       looks_ = false;
       return true;
     }
-    if (!ends && !(stretch.reach() > node_.sigma)) {
+    if (!ends && !(stretch.reach() > node_->sigma)) {
       looks_ = false;
       return true;
     }
@@ -272,7 +275,7 @@ class Tracker {
     if (!stretch.at(plan(), unit_, stepper_.turns(), target, &guess, &limit)) return stop(TrackEnd::stalled, 0.0);
     if (!stepper_.close(target, guess.state.data(), &next)) {
       if (row_ < rows_) return stop(TrackEnd::stalled, 0.0);
-      next = guess, next.sigma = target, next.inputs = node_.inputs;
+      next = guess, next.sigma = target, next.inputs = node_->inputs;
       path_inputs(target, &next.inputs);
     } else {
       adopt_turns(stepper_, guess.turn, &next);
@@ -285,15 +288,15 @@ class Tracker {
     // a way whose last row lies on a dead centre is at its end
     if (ends && until >= end_) next.sigma = end_;
     reduce(&next);
-    node_ = next;
-    step_ = stepper_.wanted_step(node_);
+    *node_ = next;
+    step_ = stepper_.wanted_step(*node_);
     return true;
   }
 
   static Limit limit_of(const Passage& p) { return {p.end, p.block, p.nodes.back(), p.beyond}; }
   // Keeps the ends that blocks have ahead, even where another block's walk comes to nothing before.
   void note_ends(const Stretch& stretch) {
-    const auto passed = [this](const Limit& seen) { return seen.at.sigma < node_.sigma - NEAR_LIMIT; };
+    const auto passed = [this](const Limit& seen) { return seen.at.sigma < node_->sigma - NEAR_LIMIT; };
     seen_.erase(std::remove_if(seen_.begin(), seen_.end(), passed), seen_.end());
     for (const Passage& p : stretch.passages)
       if (p.end == PassageEnd::dead_centre || p.end == PassageEnd::branch_point) seen_.push_back(limit_of(p));
@@ -325,8 +328,9 @@ class Tracker {
   Stepper stepper_;
   Progress progress_;
   Track track_;
-  Node node_;
-  Node next_;  // the one before `node_`, or one that was refused: its room is used again
+  Node nodes_[2];
+  Node* node_ = nodes_;
+  Node* spare_ = nodes_ + 1;  // the one before `node_`, or one that was refused: its room is used again
   long row_ = 0;
   double end_ = 0.0, step_ = 0.0;
   std::vector<Limit> seen_;  // ends that were seen ahead
