@@ -3,9 +3,9 @@
     python -m benchmarks.equilibria [--rounds N]
 
 Printed are the time of the kernel's calls for one equilibrium with its verdict and their number,
-the whole time of the search, and the time of a row of a sweep at rest in parts of that of the same row
-with all driven, for sweeps of one turn with several steps. Runs take turns, so that a
-slow moment of the machine meets each, and the best time of each counts.
+the whole time of the search, and the time of a row of a sweep at rest in parts of that of the same
+row driven, for sweeps of one turn with several steps. Runs take turns, so that a slow moment of the
+machine meets each, and the least time of the processor counts.
 """
 
 from __future__ import annotations

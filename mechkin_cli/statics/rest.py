@@ -19,11 +19,12 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import dimension_of, eliminated
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import input_number, input_text, input_unit
 from mechkin_cli.statics.forces import summed
 from mechkin_cli.statics.newton import Balancing, search
 from mechkin_cli.statics.places import Place, Statics, eigen
-from mechkin_cli.sweep import first_assembly, named_rows
+from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
@@ -197,6 +198,14 @@ class _Branch:
         found = self.statics.beside(place, steps, np.full(steps.shape[1], time))
         return self._differentiated(found.forces) if found.good.all() else None
 
+    def _far(self, place: Place, time: float, near: Floats) -> Floats | None:
+        """The stiffness at the end of a stretch; None where it has none, or where its determinant
+        has another sign than at the beginning."""
+        found = self._slopes(place, time)
+        if found is None or _determinant(found) * _determinant(near) <= 0.0:
+            return None
+        return found
+
     def _differences(self) -> Floats:
         count, step = len(self.free), tolerances.NEWTON_DIFFERENCE
         steps = np.zeros((self.values.shape[0], 2 * count))
@@ -221,10 +230,13 @@ class _Branch:
         if way.reached <= rows.size:
             return None
         states, turns, times = way.states[:, 1:], way.turns[:, 1:], self.times[rows]
-        last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
-        far = self._slopes(last, float(times[-1]))
-        if far is None or _determinant(far) * _determinant(matrix) <= 0.0:
-            return None
+        far = matrix
+        if len(self.free) > 1:
+            last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
+            known_far = self._far(last, float(times[-1]), matrix)
+            if known_far is None:
+                return None
+            far = known_far
         part = np.arange(1, rows.size + 1) / rows.size
         slopes = matrix[:, :, None] * (1.0 - part) + far[:, :, None] * part
         predicted = inputs[self.free].copy()
@@ -260,16 +272,28 @@ class _Branch:
             off > tolerances.REST_SMALL
         ):
             return None
-        self.values[:, rows] = inputs
         # the states are those before the last step, of the size of rounding
-        return Place(inputs[:, -1], states[:, -1], turns[:, -1]), far, chords
+        last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
+        if len(self.free) == 1:
+            # of one freedom the steps have told the slope, where there were any
+            told = float(np.abs(inputs[self.free, -1] - predicted[:, -1])[0])
+            far = slopes[:, :, -1]
+            if not told > tolerances.NEWTON_DIFFERENCE:
+                known_far = self._far(last, float(times[-1]), matrix)
+                if known_far is None:
+                    return None
+                far = known_far
+            elif far[0, 0] * matrix[0, 0] <= 0.0:
+                return None
+        self.values[:, rows] = inputs
+        return last, far, chords
 
     def _notes(self, first: int, last: int) -> tuple[Diagnostic, ...]:
         """Which rows are unstable equilibria."""
         rows = np.flatnonzero(self.unstable[first : last + 1]) + first
         if not rows.size:
             return ()
-        text = f"the equilibrium of {named_rows(rows)} is unstable: nothing stays there by itself"
+        text = f"the equilibrium of {RowSet.of(rows)} is unstable: nothing stays there by itself"
         hint = "hold it by an effort, or start at another equilibrium with assembly: {near: ...}"
         return (Diagnostic("unstable", "warning", text, hint=hint),)
 

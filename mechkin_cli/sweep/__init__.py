@@ -33,7 +33,7 @@ __getattr__, __dir__ = lazy_names(
         "messages": "refuse_loaded_spin stands_elsewhere",
         "parts": "RunVerdicts has_parts",
         "result": "Readable Result",
-        "rows": "SHIFTS SweepRows has_turns named_rows",
+        "rows": "SHIFTS SweepRows has_turns",
         "slopes": "ROUNDED bends jumps_between place_text size_text value_at",
         "sweep": "Sweep analyze at_once closed_rows first_assembly judge_condition "
         "rest_on_reactions row_notes",
