@@ -97,14 +97,19 @@ class _Branch:
         """All rows, from the equilibrium near an assembly at a row on."""
         driven = self.session.problem.motion.driven
         one = self.session.part(row, row)
-        balancing = Balancing.of(one, [driven[k] for k in self.free])
         own = Statics(one, self.free)
         start = own.place(self.values[:, row], state)
-        try:
-            found = search(balancing, balancing.charted(own, start))
-        except ValueError:
-            found = None
-        if found is None or not found.found:
+        # most are found without knowing what each load does alone
+        for measured in (False, True):
+            coordinates = [driven[k] for k in self.free]
+            balancing = Balancing.of(one, coordinates, measured=measured)
+            try:
+                found = search(balancing, balancing.charted(own, start))
+            except ValueError:
+                return self._nowhere(row)
+            if found.found:
+                break
+        else:
             return self._nowhere(row)
         place = balancing.uncharted(own, found.place)
         last, after = self._march(row, place, 1)
@@ -193,6 +198,14 @@ class _Branch:
         found = self.statics.beside(place, steps, np.full(steps.shape[1], time))
         return self._differentiated(found.forces) if found.good.all() else None
 
+    def _far(self, place: Place, time: float, near: Floats) -> Floats | None:
+        """The stiffness at the end of a stretch; None where it has none, or where its determinant
+        has another sign than at the beginning."""
+        found = self._slopes(place, time)
+        if found is None or _determinant(found) * _determinant(near) <= 0.0:
+            return None
+        return found
+
     def _differences(self) -> Floats:
         count, step = len(self.free), tolerances.NEWTON_DIFFERENCE
         steps = np.zeros((self.values.shape[0], 2 * count))
@@ -217,10 +230,13 @@ class _Branch:
         if way.reached <= rows.size:
             return None
         states, turns, times = way.states[:, 1:], way.turns[:, 1:], self.times[rows]
-        last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
-        far = self._slopes(last, float(times[-1]))
-        if far is None or _determinant(far) * _determinant(matrix) <= 0.0:
-            return None
+        far = matrix
+        if len(self.free) > 1:
+            last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
+            known_far = self._far(last, float(times[-1]), matrix)
+            if known_far is None:
+                return None
+            far = known_far
         part = np.arange(1, rows.size + 1) / rows.size
         slopes = matrix[:, :, None] * (1.0 - part) + far[:, :, None] * part
         predicted = inputs[self.free].copy()
@@ -234,8 +250,8 @@ class _Branch:
             if step is not None:
                 # what the last step left tells of the slopes (C. G. Broyden, Mathematics of
                 # Computation 19, 1965)
-                square = summed(step * step)
-                by = np.where(square > 0.0, step / np.where(square > 0.0, square, 1.0), 0.0)
+                squares = summed(step * step)
+                by = np.where(squares > 0.0, step / np.where(squares > 0.0, squares, 1.0), 0.0)
                 slopes = slopes + found.forces[:, None, :] * by[None, :, :]
             step = _solved(slopes, -found.forces)
             if step is None:
@@ -256,9 +272,21 @@ class _Branch:
             off > tolerances.REST_SMALL
         ):
             return None
-        self.values[:, rows] = inputs
         # the states are those before the last step, of the size of rounding
-        return Place(inputs[:, -1], states[:, -1], turns[:, -1]), far, chords
+        last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
+        if len(self.free) == 1:
+            # of one freedom the steps have told the slope, where there were any
+            told = float(np.abs(inputs[self.free, -1] - predicted[:, -1])[0])
+            far = slopes[:, :, -1]
+            if not told > tolerances.NEWTON_DIFFERENCE:
+                known_far = self._far(last, float(times[-1]), matrix)
+                if known_far is None:
+                    return None
+                far = known_far
+            elif far[0, 0] * matrix[0, 0] <= 0.0:
+                return None
+        self.values[:, rows] = inputs
+        return last, far, chords
 
     def _notes(self, first: int, last: int) -> tuple[Diagnostic, ...]:
         """Which rows are unstable equilibria."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import acos, cos, degrees, hypot, pi, radians, sin, sqrt, tan
 from pathlib import Path
 from typing import Any
@@ -264,6 +265,50 @@ def test_other_free_coordinates_find_the_same(coordinate: str) -> None:
     assert other["row.event"][order].tolist() == by_crank["row.event"].tolist()
     frequencies = by_crank["row.frequency"]
     assert other["row.frequency"][order] == pytest.approx(frequencies, rel=1e-8, nan_ok=True)
+
+
+def _scaled(text: str) -> str:
+    """Ten times as large, with springs a tenth as stiff: weights and springs grow alike."""
+
+    def larger(found: re.Match[str]) -> str:
+        return ", ".join(str(10 * float(x)) for x in found.group(0).split(","))
+
+    head, tail = text.split("links:", 1)
+    tail = re.sub(r"(?<=: \[)-?[\d.]+, -?[\d.]+", larger, tail)
+    return f"{head}links:{tail}".replace("1 N/mm, free: 60", "0.1 N/mm, free: 600").replace(
+        "g: [0.0, -98100.0]", "g: [0, -9810]"
+    )
+
+
+def _mirrored(text: str) -> str:
+    return re.sub(
+        r"(?<=: \[)(-?[\d.]+)(?=, -?[\d.]+\])", lambda found: str(-float(found.group(0))), text
+    )
+
+
+def _reordered(text: str) -> str:
+    """Joints and links in the opposite order: another tree, other cut joints."""
+    lines = text.splitlines()
+    for key in ("links:", "joints:"):
+        first = lines.index(key) + 1
+        last = next(k for k in range(first, len(lines)) if not lines[k].startswith("  "))
+        lines[first:last] = lines[first:last][::-1]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize(("change", "sign"), [(_scaled, 1.0), (_mirrored, -1.0), (_reordered, 1.0)])
+def test_the_same_mechanism_written_otherwise(change: Any, sign: float) -> None:
+    window = {"A.theta": (-180, 180)}
+    own = mk.loads(FOUR_BAR).equilibrium(window=window)
+    other = mk.loads(change(FOUR_BAR)).equilibrium(window=window)
+    order = np.argsort(sign * other["A.theta"])
+    assert sign * other["A.theta"][order] == pytest.approx(own["A.theta"], abs=1e-8)
+    assert other["row.event"][order].tolist() == own["row.event"].tolist()
+    if change is not _scaled:
+        stiffness = own["row.least_stiffness"]
+        assert other["row.least_stiffness"][order] == pytest.approx(stiffness, rel=1e-8)
+        frequency = own["row.frequency"]
+        assert other["row.frequency"][order] == pytest.approx(frequency, rel=1e-8, nan_ok=True)
 
 
 def test_lanes_and_threads_do_not_matter() -> None:
