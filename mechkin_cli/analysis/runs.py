@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.building import Built
     from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.expressions import Quantity
     from mechkin_cli.mechanism import AnyBalance
     from mechkin_cli.sweep import Result
     from mechkin_cli.tables import CoefficientsLayout
@@ -420,7 +421,30 @@ def asking(
     file = section_with(
         built.file, equilibria={**built.file.equilibria, name: section}, tables=(), balances=()
     )
-    return name, Design(build(file, built.document, design.given), design.stem, design.given)
+    made = build(file, built.document, design.given)
+    return name, _Asking(made, design.stem, design.given, (design, near, window))
+
+
+class _Asking(Design):
+    """A design with equilibria that its text does not have; `asked` is what it was made of."""
+
+    def __init__(
+        self, built: Built, stem: str, given: Mapping[str, Quantity], asked: tuple[Any, ...]
+    ) -> None:
+        super().__init__(built, stem, given)
+        self.asked = asked
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as what it was made of."""
+        return _asked_again, self.asked
+
+
+def _asked_again(
+    design: Design,
+    near: Mapping[str, Setting] | None,
+    window: Mapping[str, tuple[Setting, Setting]] | None,
+) -> Design:
+    return asking(design, near, window)[1]
 
 
 def _written(value: Setting) -> str:

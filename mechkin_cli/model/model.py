@@ -361,7 +361,12 @@ class Model(Listed):
         )
 
     def run_free(
-        self, name: str, *, tables: Sequence[str] | None = None, mode: str | None = None
+        self,
+        name: str,
+        quantities: Iterable[str] | None = None,
+        *,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
     ) -> Analysis:
         """A response or equilibria by name: what `respond` and `equilibrium` give.
 
@@ -369,7 +374,7 @@ class Model(Listed):
             InvalidFile: too few coordinates are named, or too many.
             UsageError: an unknown run, table or mode.
         """
-        return run_free(self, name, tables=tables, mode=mode)
+        return run_free(self, name, quantities, tables, mode)
 
     def vibration(
         self,

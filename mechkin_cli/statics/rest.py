@@ -20,7 +20,7 @@ from mechkin_cli.mechanism import dimension_of, eliminated
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.row_notes import RowSet
-from mechkin_cli.session import input_number, input_text, input_unit
+from mechkin_cli.session import Continued, input_number, input_text, input_unit
 from mechkin_cli.statics.forces import summed
 from mechkin_cli.statics.newton import Balancing, search
 from mechkin_cli.statics.places import Place, Statics, eigen
@@ -47,14 +47,20 @@ def rested(session: Session) -> Session:
         # the sweep says why there is no first assembly
         return _moved(session, rest._replace(solved=True), session.inputs.values)
     found = _Branch(sized, rest).follow(start.row, start.state)
-    return _moved(session, found.rest, found.values)
+    moved = _moved(session, found.rest, found.values)
+    if found.start is None or (session.base is None and session.first is None):
+        return moved
+    # an assembly that is continued stands where the coordinates have not come to rest yet
+    return replace(moved, base=None, first=found.start)
 
 
 class _Rows(NamedTuple):
-    """The inputs of all rows (inputs, rows) in kernel units, and what is known of them."""
+    """The inputs of all rows (inputs, rows) in kernel units, what is known of them, and the place
+    from which they were followed."""
 
     rest: Rest
     values: Floats
+    start: Continued | None = None
 
 
 def _moved(session: Session, rest: Rest, values: Floats) -> Session:
@@ -121,7 +127,7 @@ class _Branch:
         ends = tuple(end or _NO_END for end in (before, after))
         notes = self._notes(first, last)
         rest = self.rest._replace(solved=True, first=first, last=last, ends=ends, notes=notes)
-        return _Rows(rest, self.values)
+        return _Rows(rest, self.values, Continued(place.state, row))
 
     def _nowhere(self, row: int) -> _Rows:
         text = f"no place was found at which the loads balance in row {row + 1}"
