@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from mechkin_cli.arguments import a_whole_number, texts
 from mechkin_cli.vibration import Vibration, freed
 
 if TYPE_CHECKING:
-    from mechkin_cli.model.model import Model
+    from collections.abc import Mapping
+
+    from mechkin_cli.analysis import Analysis, Design
+    from mechkin_cli.arguments import Setting
+
+    class _Model(Protocol):
+        """What is asked of a `Model`."""
+
+        @property
+        def design(self) -> Design: ...
+        @property
+        def runs(self) -> tuple[str, ...]: ...
+        def analyses(self, run: str | None = None) -> list[Analysis]: ...
+        def with_parameters(self, values: Mapping[str, Setting]) -> _Model: ...
 
 
 def vibration(
-    model: Model,
+    model: _Model,
     run: str | None,
     row: int,
     coordinates: Sequence[str] | None,
@@ -37,7 +50,7 @@ def vibration(
     return Vibration(freed(analysis.result, row, coordinates, held), again)
 
 
-def _first_run(model: Model) -> str:
+def _first_run(model: _Model) -> str:
     """The first equilibria of the file, else its first run."""
     responses = model.design.at_responses.problem.responses
     resting = (run for run, one in responses.items() if getattr(one, "search", None) is not None)
