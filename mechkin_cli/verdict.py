@@ -126,6 +126,17 @@ class Status(IntEnum):
         "solved as if a cable ran in the plane of a pulley that it leaves at a fleet angle.",
     )
 
+    no_equilibrium = (
+        15,
+        "ends",
+        "no place was found at which the loads balance.",
+    )
+    snapped_through = (
+        16,
+        "ends",
+        "the branch of equilibria turns back before this row: the mechanism snaps through.",
+    )
+
     has_solution: bool
     has_rates: bool
     has_forces: bool

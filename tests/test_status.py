@@ -32,6 +32,8 @@ LABELS = {
     "beyond-limit": 12,
     "slack": 13,
     "fleet-angle": 14,
+    "no-equilibrium": 15,
+    "snapped-through": 16,
 }
 
 

@@ -23,7 +23,8 @@ __getattr__, __dir__ = lazy_names(
         "analysis": "Analysis Solvable",
         "certificate": "Certificate",
         "design": "Design",
-        "runs": "a_packing input_values respond response_name run_name run_sweep stream_sweep",
+        "runs": "a_packing asking equilibrium input_values respond response_name run_free run_name "
+        "run_sweep stream_sweep",
         "stream": "Block PartRows Stream",
     },
 )

@@ -117,6 +117,12 @@ class Solvable(Protocol):
         """Runs a response."""
         ...
 
+    def run_free(
+        self, name: str, *, tables: Sequence[str] | None = None, mode: str | None = None
+    ) -> Analysis:
+        """Runs a response, or finds equilibria, by name."""
+        ...
+
     def modes(self, *, run: str | None = None) -> Modes:
         """All assembly modes at the first row of a run."""
         ...

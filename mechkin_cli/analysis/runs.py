@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import response as response_room, tolerances
+from mechkin_cli import response as response_room, statics, tolerances
 from mechkin_cli.analysis.analysis import Analysis
+from mechkin_cli.analysis.design import Design
 from mechkin_cli.analysis.stream import Stream
 from mechkin_cli.arguments import (
     Setting,
@@ -20,13 +21,14 @@ from mechkin_cli.arguments import (
     shown,
     texts,
 )
-from mechkin_cli.building import is_tiny_length, used_quantities
+from mechkin_cli.building import build, is_tiny_length, used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.kernel.functions import check_threads, check_width
 from mechkin_cli.mechanism import DrivenInput, Problem, dimension_of, read_by
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.schema import CoordinateWindow, Equilibrium, section_of, section_with
 from mechkin_cli.session import Packing, Session, turn_of
 from mechkin_cli.structure import UnsolvableGraph
 from mechkin_cli.sweep import Sweep, refuse_loaded_spin
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from mechkin_cli.building import Built
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import AnyBalance
+    from mechkin_cli.sweep import Result
     from mechkin_cli.tables import CoefficientsLayout
 
 QUANTITIES = (
@@ -66,6 +69,7 @@ def _packing(lanes: object, threads: object) -> Packing:
 
 
 _known_packing = cache(_packing)
+_ANY_PACKING = Packing()
 
 
 def run_name(runs: Sequence[str], name: str | None) -> str:
@@ -89,7 +93,7 @@ def response_name(problem: Problem, name: str | None) -> str:
     Raises:
         UsageError: there is none, or none of this name.
     """
-    known = list(problem.responses)
+    known = [run for run, one in problem.responses.items() if one.search is None]
     if not known:
         raise UsageError(
             "the file has no responses; add responses: {NAME: {start: {...}, time: {...}}}"
@@ -102,6 +106,29 @@ def response_name(problem: Problem, name: str | None) -> str:
     if name not in known:
         hint = nearest_hint(name, known) or f"responses are {', '.join(known)}"
         raise UsageError(f"there is no response {name[:LONGEST_NAME]}; {hint}")
+    return name
+
+
+def equilibrium_name(problem: Problem, name: str | None) -> str:
+    """The equilibria that are meant; without a name the only ones.
+
+    Raises:
+        UsageError: there are none, or none of this name.
+    """
+    known = [run for run, one in problem.responses.items() if one.search is not None]
+    if not known:
+        raise UsageError(
+            "the file has no equilibria; add equilibria: {NAME: {near: {...}}}, or ask for one: "
+            'equilibrium(near={"A.theta": 20})'
+        )
+    if name is None:
+        if len(known) > 1:
+            raise UsageError(f"equilibrium() needs a name; equilibria are {', '.join(known)}")
+        return known[0]
+    a_text("name", name, f'"{known[0]}"')
+    if name not in known:
+        hint = nearest_hint(name, known) or f"equilibria are {', '.join(known)}"
+        raise UsageError(f"there are no equilibria {name[:LONGEST_NAME]}; {hint}")
     return name
 
 
@@ -262,6 +289,7 @@ def _asked(
     if mode is not None:
         a_text("mode", mode, '"A"')
         session = session.in_mode(mode)
+    session = statics.rested(session)
     layouts = chosen_tables(model.built, tables, SWEEP)
     balances = chosen(model.built.balances, tables) if balanced else ()
     named = wanted_names(session, SWEEP, (), quantities)
@@ -350,10 +378,81 @@ def respond(
     threads: int,
 ) -> Analysis:
     """Runs a response of a model; arguments and errors are those of `Model.respond`."""
-    packing = a_packing(lanes, threads)
+    run = response_name(model.design.at_responses.problem, name)
+    return run_free(model, run, quantities, tables, mode, a_packing(lanes, threads))
+
+
+ASKED = "equilibrium"
+"""The name of equilibria that are asked for and that the file does not have."""
+
+
+def asking(
+    design: Design,
+    near: Mapping[str, Setting] | None,
+    window: Mapping[str, tuple[Setting, Setting]] | None,
+) -> tuple[str, Design]:
+    """A design with equilibria beside those of its file, and their name.
+
+    Raises:
+        UsageError: values of no use.
+        InvalidFile: too few coordinates are named, or too many.
+    """
+    if near is not None and window is not None:
+        raise UsageError("near asks for one equilibrium, window for all: give one of them")
+    built, name = design.at_responses.built, ASKED
+    while name in built.runs:
+        name += "_"
+    places = {} if near is None else settings("near", near, '{"A.theta": 20}')
+    ends = {}
+    for coordinate, pair in ({} if window is None else window).items():
+        if not isinstance(pair, list | tuple) or len(pair) != 2:
+            raise UsageError(f"window: {coordinate} is no pair; write {{'A.theta': (-90, 90)}}")
+        ends[coordinate] = [a_setting("window", each) for each in pair]
+    section = section_of(
+        Equilibrium,
+        near={key: _written(value) for key, value in places.items()},
+        window={
+            key: section_of(CoordinateWindow, **{"from": _written(low), "to": _written(high)})
+            for key, (low, high) in ends.items()
+        },
+    )
+    # the file's tables belong to its own runs
+    file = section_with(
+        built.file, equilibria={**built.file.equilibria, name: section}, tables=(), balances=()
+    )
+    return name, Design(build(file, built.document, design.given), design.stem, design.given)
+
+
+def _written(value: Setting) -> str:
+    return value if isinstance(value, str) else repr(float(value))
+
+
+def equilibrium(
+    model: Solvable,
+    name: str | None,
+    quantities: Iterable[str] | None,
+    *,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Analysis:
+    """Finds equilibria of a model; arguments and errors are those of `Model.equilibrium`."""
+    run = equilibrium_name(model.design.at_responses.problem, name)
+    return run_free(model, run, quantities, tables, mode, a_packing(lanes, threads))
+
+
+def run_free(
+    model: Solvable,
+    run: str,
+    quantities: Iterable[str] | None = None,
+    tables: Sequence[str] | None = None,
+    mode: str | None = None,
+    packing: Packing = _ANY_PACKING,
+) -> Analysis:
+    """A response, or equilibria, by name; errors are those of `Model.respond`."""
     design = model.design.at_responses
     problem = design.problem
-    run = response_name(problem, name)
     session = model.design.session_of(run)
     response = problem.responses[run]
     if mode is not None:
@@ -363,7 +462,9 @@ def respond(
         session = session.assembled(assembly)
     layouts = chosen_tables(design.built, tables, run)
     names = wanted_names(session, run, layouts, quantities)
-    result = response_room.respond(problem, response, names, packing, session)
+    args = (problem, response, names, packing, session)
+    result: Result
+    result = response_room.respond(*args) if response.search is None else statics.balance(*args)
     analysis = Analysis(model, layouts, result, run, asked=tuple(names))
     if mode is not None:
         refuse_unknown_mode(analysis.diagnostics)

@@ -30,10 +30,11 @@ from mechkin_cli.building.fields import (
     read_points,
     read_units,
 )
+from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
-from mechkin_cli.building.motion import build_motion, point_guides
+from mechkin_cli.building.motion import build_motion, near_rest, point_guides
 from mechkin_cli.building.play import build_plays, loose_in_sweep, note_tight, with_plays
 from mechkin_cli.building.responses import (
     build_assembly,
@@ -88,7 +89,7 @@ from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.building.responses import Graphs
+    from mechkin_cli.building.start_graphs import Graphs
     from mechkin_cli.building.view import ViewSettings
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import AnyBalance, ResponseProblem
@@ -149,7 +150,7 @@ def build(
     view = _view(fields, file, problem)
     forces = needs_forces(problem, own)
     # the unit of forces that are computed stands above their column
-    if file.loads or any(response.efforts for response in file.responses.values()):
+    if file.loads or any(run.efforts for run in file.free_runs.values()):
         note_force_unit(fields)
     if forces:
         note_own_motors(fields, file.motion, file.actuators)
@@ -167,7 +168,7 @@ def build(
         problem = settled(problem)
     graphs: Graphs = {}
     if problem.responses and graph is not None:
-        from mechkin_cli.building.responses import with_graphs
+        from mechkin_cli.building.start_graphs import with_graphs
 
         problem, graphs = with_graphs(fields, problem)
     errors = [d for d in fields.diagnostics if d.severity == "error"]
@@ -266,6 +267,7 @@ def build_problem(
     if motion is None:
         motion = build_motion(fields, file.motion, moving_joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
+    motion = near_rest(motion, assembly, fields.units)
     limits = (*build_limits(fields, file, joints, couplings), *flanks.values())
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
@@ -280,21 +282,23 @@ def build_problem(
     problem = replace(problem, limits=limits)
     # rows of responses have a time, and all plays
     swept = problem.quantities()
-    timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
-    if plays and file.responses:
+    timed = swept if "time" in swept or not file.free_runs else {**swept, "time": TIME_OF_ROW}
+    if plays and file.free_runs:
         timed = {**replace(problem, mechanism=with_plays(mechanism, plays)).quantities(), **timed}
     quantities = {name: swept if name == SWEEP else timed for name in runs_of(file)}
     loads = LoadBuilder(fields, links, joints, points, quantities)
     loads.add_all(file.loads)
     mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
+    if motion.rest is not None:
+        mechanism = without_friction(fields, mechanism, ("motion", "rest"))
     problem = replace(problem, mechanism=mechanism, load_laws=laws)
     refuse_tied_friction(fields, file.loads, problem)
-    if not (file.responses and responses):
+    if not (file.free_runs and responses):
         return problem
     from mechkin_cli.building.responses import build_responses
 
     free = replace(problem, mechanism=with_plays(mechanism, plays))
-    args = (fields, file.responses, free, loads, per_row, moving)
+    args = (fields, file.free_runs, free, loads, per_row, moving)
     return replace(problem, responses=build_responses(*args))
 
 

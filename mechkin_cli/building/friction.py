@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from math import pi
 
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
     JOINT_TYPES,
     PLANE_JOINT_TYPES,
@@ -20,6 +21,7 @@ from mechkin_cli.mechanism import (
     Damper,
     FrictionLaw,
     Joint,
+    Mechanism,
     Rubbing,
     cross,
     dot,
@@ -29,6 +31,7 @@ from mechkin_cli.mechanism import (
     subtract,
     unit,
 )
+from mechkin_cli.record import replace
 from mechkin_cli.schema import FallingCoefficient, FrictionAtJoint
 from mechkin_cli.tolerances import LARGEST_FLANK, PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, VELOCITY, VISCOSITY
@@ -37,6 +40,18 @@ _FRICTION = "friction"
 _FRICTION_LENGTHS = ("radius", "length", "collar", "width")
 _FRICTION_KEYS = (*_FRICTION_LENGTHS, "across", "flank")
 _FILM_KEYS = ("viscosity", "clearance", "radius", "length")
+
+
+def without_friction(fields: Fields, mechanism: Mechanism, path: Path) -> Mechanism:
+    """The mechanism as it rests without friction, which would hold it in a range of places; where
+    joints rub, that is noted."""
+    if not mechanism.frictions:
+        return mechanism
+    text = "friction is left out: the loads balance without it"
+    hint = "friction holds the mechanism in a range about this place, too"
+    place = fields.document.place(path)
+    fields.note(Diagnostic("friction-left-out", "note", text, place, hint=hint))
+    return replace(mechanism, frictions=())
 
 
 def build_friction(

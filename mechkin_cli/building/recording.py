@@ -151,6 +151,8 @@ def precise_response(
     assert response is not None
     if response.driven:
         raise TraceLost("a coordinate that is driven by a law of time")
+    if response.search is not None:
+        raise TraceLost("a coordinate that is found where the loads balance")
     recorder = ExactRecorder()
     file, name = built.file, response.name
     with exact_numbers(recorder):
@@ -158,7 +160,7 @@ def precise_response(
         base = built.problem
         problem = build_problem(fields, file, motion=base.motion, moving=base.responses)
         recorded = replace(problem.responses[name], held=())
-        path = ("responses", name, "time")
+        path = (response.section, name, "time")
         over = ExactRows(recorder, response.rows)
         moments = exact_moments(fields, path, file.responses[name].time, over)
         motion = start_motion(fields, recorded, recorder)
@@ -199,6 +201,8 @@ def record_response(built: Built, names: Sequence[str], run: str) -> tuple[Recor
     response = base.responses[run]
     if response.driven or response.held:
         raise TraceLost("a coordinate that a law of time drives, or that is held")
+    if response.search is not None:
+        raise TraceLost("a coordinate that is found where the loads balance")
     given = set(names) & _read_by(built, run)
     if given:
         raise TraceLost(f"moments, stops or tolerances read {', '.join(sorted(given))}")

@@ -1,5 +1,4 @@
-"""`responses:` - start, assembly, efforts, drives, moments and stops of each response; and the
-solver graph at its start, which shows whether the start names as many coordinates as are free.
+"""`responses:` and `equilibria:` - start, assembly, efforts, drives, moments and stops of each.
 
 Values of a start name the independent coordinates. There are as many rates as values: those that
 are not written are zero, unless a rate of another coordinate stands for one of them; then all are
@@ -19,17 +18,20 @@ import numpy as np
 
 from mechkin_cli import idle, mobility, tolerances
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_coordinate
+from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, spaced_moments
 from mechkin_cli.building.spacing import has_too_many_rows
-from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import parse
 from mechkin_cli.mechanism import (
     Assembly,
     CrossingEnd,
     DeadCentreEnd,
+    EquilibriumSearch,
     Joint,
     JointLoad,
+    Limit,
     LoadLaw,
     Moments,
     MotionInputs,
@@ -39,12 +41,10 @@ from mechkin_cli.mechanism import (
     Stop,
     TurnsEnd,
     is_angle,
-    response_problem,
 )
 from mechkin_cli.record import replace
 from mechkin_cli.schema import AssemblySection, TimeSection, responses as written
-from mechkin_cli.session import jumps_of, left_free, solver_graph
-from mechkin_cli.structure import SolverGraph, UnsolvableGraph, is_redundant, listed
+from mechkin_cli.session import jumps_of
 from mechkin_cli.units import DIMENSIONLESS, TIME
 
 if TYPE_CHECKING:
@@ -113,36 +113,68 @@ RATE = "_dot"
 
 
 def build_start(
-    fields: Fields, path: Path, section: written.Response, joints: Mapping[str, Joint]
+    fields: Fields,
+    path: Path,
+    section: written.Response | written.Equilibrium,
+    joints: Mapping[str, Joint],
 ) -> tuple[StartValue, ...]:
-    """The start of the response at `path`, in the order of the file."""
-    path = (*path, "start")
+    """The start of the run at `path`, in the order of the file; that of equilibria in a window is
+    its middle."""
+    key, texts = _started(section)
+    path = (*path, key)
     errors = fields.error_count
     values: dict[str, float] = {}
     rates: dict[str, float] = {}
-    for key, text in section.start.items():
+    for key, text in texts.items():
         name, place = key.removesuffix(RATE), (*path, key)
         if not is_coordinate(fields, place, name, joints):
             continue
         coordinate = name.rpartition(".")[2]
         if _same_freedom(name, section.driven, joints):
             message = f"{name} is driven, so its law defines where it starts"
+            if isinstance(section, written.Equilibrium):
+                message = f"{name} is held, so no load decides where it is"
             fields.key_error("start-and-drive", place, message, "remove it here, or under driven:")
-        elif key.endswith(RATE):
+        elif key.endswith(RATE) and isinstance(text, str):
             rates[name] = fields.number(place, text, dimension_of(coordinate, 1))
         elif other := _same_freedom(name, values, joints):
             message = f"{other} and {name} are one freedom"
             fields.key_error("driven-twice", place, message, "start one of them")
+        elif isinstance(text, written.CoordinateWindow):
+            low, high = _window(fields, place, text, coordinate)
+            values[name] = 0.5 * (low + high)
         else:
             values[name] = fields.number(place, text, dimension_of(coordinate))
     if fields.error_count == errors:
         rates = _all_rates(fields, path, values, rates)
-    names = dict.fromkeys(key.removesuffix(RATE) for key in section.start)
+    names = dict.fromkeys(key.removesuffix(RATE) for key in texts)
     return tuple(
         StartValue(*_split(name), values.get(name), rates.get(name))
         for name in names
         if name in values or name in rates
     )
+
+
+def _started(
+    section: written.Response | written.Equilibrium,
+) -> tuple[str, Mapping[str, str | written.CoordinateWindow]]:
+    """The key under which a run names its independent coordinates, and what stands there."""
+    if isinstance(section, written.Response):
+        return "start", section.start
+    return ("window", section.window) if section.window else ("near", section.near)
+
+
+def _window(
+    fields: Fields, path: Path, section: written.CoordinateWindow, coordinate: str
+) -> tuple[float, float]:
+    """The least and the largest value of a window (rad, m)."""
+    dimension, errors = dimension_of(coordinate), fields.error_count
+    low = fields.number((*path, "from"), section.first, dimension)
+    high = fields.number((*path, "to"), section.last, dimension)
+    if fields.error_count == errors and not high > low:
+        text = "this window is empty: its end is not above its beginning"
+        fields.error("empty-window", (*path, "to"), text, "give from: the least value")
+    return low, high
 
 
 def _split(name: str) -> tuple[str, str]:
@@ -245,13 +277,13 @@ class StopBuilder:
 
 def build_responses(
     fields: Fields,
-    sections: Mapping[str, written.Response],
+    sections: Mapping[str, written.Response | written.Equilibrium],
     problem: Problem,
     loads: LoadBuilder,
     per_row: int,
     known: Mapping[str, ResponseProblem] | None = None,
 ) -> dict[str, ResponseProblem]:
-    """The responses of a file; errors are noted in `fields`.
+    """The responses and equilibria of a file; errors are noted in `fields`.
 
     Args:
         fields: of the file, with units and parameters.
@@ -268,7 +300,10 @@ def build_responses(
     built = {}
     for name, section in sections.items():
         errors = fields.error_count
-        built[name] = builder.response(name, section)
+        if isinstance(section, written.Equilibrium):
+            built[name] = builder.equilibrium(name, section)
+        else:
+            built[name] = builder.response(name, section)
         if fields.error_count > errors:
             fields.failed.add(name)
     return built
@@ -312,6 +347,50 @@ class _ResponseBuilder:
             load_laws=laws,
         )
 
+    def equilibrium(self, name: str, section: written.Equilibrium) -> ResponseProblem:
+        """The equilibria of a name: a response that rests, at one moment."""
+        fields, path = self.fields, ("equilibria", name)
+        moment = 0.0
+        if section.time is not None:
+            moment = fields.written((*path, "time"), section.time, TIME)
+        moments = np.array([moment])
+        time = Moments(fields.units.to_si(moments.copy(), TIME), moments)
+        clock = Clock(time, moment, moment, 1)
+        driven = build_inputs(
+            fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
+        ) or MotionInputs((), 1)
+        efforts = self._efforts(path, section, name)
+        mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
+        mechanism = without_friction(fields, mechanism, path)
+        return ResponseProblem(
+            name=name,
+            place=fields.document.key_place(path),
+            start=build_start(fields, path, section, self.joints),
+            assembly=self._assembly(path, section),
+            efforts=tuple(effort.renumbered(numbers) for effort in efforts),
+            driven=driven.inputs,
+            course=None,
+            moments=time,
+            stops=(),
+            tolerance=tolerances.RESPONSE_TOLERANCE,
+            fixed_step=None,
+            mechanism=replace(mechanism, drives=None),
+            load_laws=laws,
+            search=EquilibriumSearch(self._windows(path, section), section.starts or 0),
+        )
+
+    def _windows(self, path: Path, section: written.Equilibrium) -> tuple[Limit, ...]:
+        """The window, of the coordinates that there are."""
+        found = []
+        for name, texts in section.window.items():
+            joint, coordinate = _split(name)
+            if joint not in self.joints or coordinate not in self.joints[joint].type.coordinates:
+                continue  # refused as a start
+            at = (*path, "window", name)
+            low, high = _window(self.fields, at, texts, coordinate)
+            found.append(Limit(joint, coordinate, low, high, self.fields.document.place(at)))
+        return tuple(found)
+
     def _stops(
         self, path: Path, section: written.Response, builder: StopBuilder
     ) -> tuple[Stop, ...]:
@@ -343,10 +422,13 @@ class _ResponseBuilder:
                     yield CrossingEnd(words, limit.place, law, dimension, at, direction, 1, limit)
 
     def recorded(
-        self, name: str, section: written.Response, known: ResponseProblem
+        self,
+        name: str,
+        section: written.Response | written.Equilibrium,
+        known: ResponseProblem,
     ) -> ResponseProblem:
         """A known response whose start, loads and links are those of the recording."""
-        path: Path = ("responses", name)
+        path: Path = (known.section, name)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
         return replace(
@@ -434,14 +516,18 @@ class _ResponseBuilder:
         time = Moments(self.fields.units.to_si(moments.copy(), TIME), moments)
         return Clock(time, float(moments[0]), float(moments[-1]), moments.size)
 
-    def _assembly(self, path: Path, section: written.Response) -> Assembly:
-        """The response's own choice, else the file's."""
-        near = near_values(self.fields, (*path, "near"), section.near, self.joints)
+    def _assembly(self, path: Path, section: written.Response | written.Equilibrium) -> Assembly:
+        """The run's own choice, else the file's."""
+        near: Mapping[str, float] = {}
+        if isinstance(section, written.Response):
+            near = near_values(self.fields, (*path, "near"), section.near, self.joints)
         if not near and section.mode is None:
             return self.problem.assembly
         return replace(self.problem.assembly, near=near, mode=section.mode)
 
-    def _efforts(self, path: Path, section: written.Response, run: str) -> list[JointLoad]:
+    def _efforts(
+        self, path: Path, section: written.Response | written.Equilibrium, run: str
+    ) -> list[JointLoad]:
         efforts = []
         for name, value in section.efforts.items():
             place = (*path, "efforts", name)
@@ -493,117 +579,3 @@ class _ResponseBuilder:
             limit = f"{most} steps"
             self.fields.error("too-many-steps", path, message, hint, measured=measured, limit=limit)
         return value
-
-
-Graphs = dict[str, SolverGraph | Diagnostic]
-
-HINT = "start as many independent coordinates as are free: start: {O1.theta: 20}"
-
-
-def with_graphs(fields: Fields, problem: Problem) -> tuple[Problem, Graphs]:
-    """The problem whose responses have their idle freedoms held, and are held to the family that
-    their coordinates name, and their graphs; links that would spin are noted."""
-    responses, graphs = {}, Graphs()
-    for name, response in problem.responses.items():
-        first = response_problem(problem, response)
-        first = replace(first, held=held_of(first))
-        response = replace(response, held=first.held)
-        graphs[name] = response_graph(fields, problem, response)
-        if isinstance(graphs[name], SolverGraph):
-            held = mobility.held_to_family(first)
-            if held != first.held:
-                first, response = replace(first, held=held), replace(response, held=held)
-                graphs[name] = response_graph(fields, problem, response)
-        if isinstance(graphs[name], SolverGraph):
-            note_spins(fields, first, free=True)
-            response = replace(response, mechanism=settled(first).mechanism)
-        responses[name] = response
-    return replace(problem, responses=responses), graphs
-
-
-def response_graph(
-    fields: Fields, problem: Problem, response: ResponseProblem
-) -> SolverGraph | Diagnostic:
-    """The solver graph with the start's coordinates driven, or why there is none: the start names
-    too few coordinates or too many.
-
-    Where constraints are redundant the number of their equations does not determine how many
-    coordinates are free; then the motion at the assembled start does.
-    """
-    first = response_problem(problem, response)
-    driven, mechanism = first.driven, first.solved_mechanism
-    place = fields.document.place(("responses", response.name, "start"))
-    try:
-        graph = solver_graph(mechanism, driven)
-    except UnsolvableGraph as error:
-        if error.missing:
-            return _too_few(response, error)._replace(place=place)
-        for extra in reversed(response.independent):
-            if _is_solvable(mechanism, [one for one in driven if one != extra]):
-                return _too_many(response, extra)._replace(place=place)
-        return error.diagnostic._replace(place=place)
-    if not is_redundant(graph) and response.independent:
-        return graph
-    at = [float(item.values[0]) for item in first.motion.inputs]
-    standing = dict(zip(driven, [*at, *first.held_at.values()], strict=True))
-    moving = left_free(mechanism, standing)
-    # the drawing alone may be a special position
-    if len(moving) > 1 and all(moving):
-        return _undetermined(response, mechanism, driven)._replace(place=place)
-    for extra in reversed(response.independent):
-        fewer = {one: value for one, value in standing.items() if one != extra}
-        moving = left_free(mechanism, fewer)
-        if moving and not any(moving):
-            return _too_many(response, extra)._replace(place=place)
-    return graph
-
-
-def _is_solvable(mechanism: Mechanism, driven: Sequence[tuple[str, str]]) -> bool:
-    try:
-        solver_graph(mechanism, driven)
-    except UnsolvableGraph:
-        return False
-    return True
-
-
-def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:
-    free = len(response.independent) + error.missing
-    return Diagnostic(
-        "start-count",
-        "error",
-        f"the start of {response.name} names {_coordinates(response.independent)}, but "
-        f"{free} {'is' if free == 1 else 'are'} free; candidates: {listed(error.candidates)}",
-        measured=f"{error.missing} more unknown{'s' * (error.missing > 1)} than closing equations",
-        hint=HINT,
-    )
-
-
-def _undetermined(
-    response: ResponseProblem, mechanism: Mechanism, driven: Sequence[tuple[str, str]]
-) -> Diagnostic:
-    places = {".".join(place) for place in driven}
-    names = [name for name in mechanism.coordinates if name not in places]
-    return Diagnostic(
-        "start-count",
-        "error",
-        f"the start of {response.name} names {_coordinates(response.independent)}, but more are "
-        f"free; candidates: {listed(names)}",
-        measured="links move at every assembled place while these coordinates rest",
-        hint=HINT,
-    )
-
-
-def _too_many(response: ResponseProblem, extra: tuple[str, str]) -> Diagnostic:
-    name = ".".join(extra)
-    return Diagnostic(
-        "start-count",
-        "error",
-        f"the start of {response.name} names {_coordinates(response.independent)}, which is more "
-        f"than are free: {name} follows from the others",
-        hint=f"remove {name} from start; to choose among assemblies write near: {{{name}: ...}}",
-    )
-
-
-def _coordinates(named: Sequence[object]) -> str:
-    count = len(named)
-    return "no coordinate" if not count else f"{count} coordinate{'s' * (count > 1)}"

@@ -32,6 +32,7 @@ from mechkin_cli.tables import (
     Remark,
     TableLayout,
     default_table,
+    resting_table,
     row_texts,
 )
 from mechkin_cli.tolerances import EQUAL_STEPS
@@ -47,15 +48,19 @@ if TYPE_CHECKING:
 
 
 def runs_of(file: MechanismFile) -> tuple[str, ...]:
-    """The runs of a file by name, the sweep first; a file of responses alone has no sweep."""
-    swept = file.motion is not None or not file.responses
-    return (*((SWEEP,) if swept else ()), *file.responses)
+    """The runs of a file by name, the sweep first, then responses and equilibria; a file of these
+    alone has no sweep."""
+    swept = file.motion is not None or not file.free_runs
+    return (*((SWEEP,) if swept else ()), *file.free_runs)
 
 
 def unknown_run(fields: Fields, path: Path, name: str, known: Collection[str]) -> None:
     """Notes that the name at `path` is not a run."""
     if name == SWEEP:
-        text, hint = "there is no sweep: the file has no motion:", "name a response, or add motion:"
+        text, hint = (
+            "there is no sweep: the file has no motion:",
+            "name another run, or add motion:",
+        )
     else:
         text = f"there is no run {name}"
         hint = nearest_hint(name, list(known)) or f"runs are {', '.join(known)}"
@@ -132,8 +137,11 @@ def _default(problem: Problem, run: str) -> TableLayout:
         timed = problem.motion.time is not None
         efforts = [".".join(pair) for pair in problem.acting]
     else:
+        response = problem.responses[run]
+        efforts = [f"{joint}.{name}" for joint, name in response.efforts_of]
+        if response.search is not None:
+            return resting_table(problem.mechanism.coordinates, efforts, run)
         timed = True
-        efforts = [f"{joint}.{name}" for joint, name in problem.responses[run].efforts_of]
     return default_table(problem.mechanism.coordinates, efforts, run=run, timed=timed)
 
 

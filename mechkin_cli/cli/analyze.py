@@ -75,8 +75,9 @@ def run_all(
             tell(f"following {model.problem.motion.rows} rows")
             analyses.append(model.analyze(tables=chosen, mode=mode))
         else:
-            tell(f"integrating {run}")
-            analyses.append(model.respond(run, tables=chosen, mode=mode))
+            rests = model.response(run).search is not None
+            tell(f"looking for {run}" if rests else f"integrating {run}")
+            analyses.append(model.run_free(run, tables=chosen, mode=mode))
     return analyses
 
 
@@ -87,7 +88,7 @@ def certify_sweeps(analyses: Sequence[Analysis]) -> tuple[Diagnostic, ...]:
         if analysis.run == SWEEP:
             _ = analysis.certificate
             continue
-        text = f"the rows of response {analysis.run} are not proven: --certify proves sweeps"
+        text = f"the rows of {analysis.run} are not proven: --certify proves sweeps"
         notes.append(Diagnostic("not-proven", "note", text))
     return tuple(notes)
 

@@ -69,7 +69,8 @@ def _input_faults(model: Model) -> list[Diagnostic]:
             inputs = model.problem.motion.inputs
             path: tuple[str, ...] = ("motion", "inputs") if inputs else ("joints",)
         else:
-            path = ("responses", run, "start")
+            response = model.response(run)
+            path = (response.section, run, response.named)
         if structure.is_redundant(_graph(model, run)):
             place = model.built.document.place(path)
             found = mobility.drawn_faults(model.session_of(run))
@@ -108,7 +109,10 @@ def _sentence(model: Model) -> str:
     unseen = mechanism.loops - mechanism.told_loops
     loops = max(sum(not closing.terms for closing in graph.closings) for graph in graphs)
     counts = {"loop": max(loops - unseen, 0), "row": rows}
-    counts |= {"response": len(model.problem.responses)} if model.problem.responses else {}
+    rests = sum(one.search is not None for one in model.problem.responses.values())
+    moves = len(model.problem.responses) - rests
+    counts |= {"response": moves} if moves else {}
+    counts |= {"run of equilibria": rests} if rests else {}
     counts |= {"table": len(model.tables)}
     return ", ".join(f"{n} {noun}{'s' * (n != 1)}" for noun, n in counts.items())
 

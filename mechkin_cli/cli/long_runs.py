@@ -1,10 +1,12 @@
 """What `mechkin analyze` does with a sweep whose rows are not held: each part of them is written
-and summed up, and forgotten."""
+and summed up, and forgotten. A thread writes while the next part is solved."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Semaphore, Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -83,7 +85,7 @@ def _refuse_responses(model: Model, command: AnalyzeCommand) -> None:
     found = [run for run in own if run in wanted]
     if found or SWEEP not in model.runs:
         raise UsageError(
-            f"--summary-only sums up sweeps, and {', '.join(found or own)} is a response; choose "
+            f"--summary-only sums up sweeps, and {', '.join(found or own)} is none; choose "
             "tables of the sweep with --table"
         )
 
@@ -139,13 +141,15 @@ def stream_to(
     progress = _progress(tell, stream.run_rows)
     with files:
         for part, own in stream.parts():
-            for place, table in enumerate(tables):
-                files.write(table.add(part, own, place))
+            rows: list[tuple[Columns, Sequence[str]]] = [
+                (table.add(part, own, place), ()) for place, table in enumerate(tables)
+            ]
             if not command.summary_only:
-                files.write(_verdicts(part, own), whole=("row",))
+                rows.append((_verdicts(part, own), ("row",)))
+                files.write(rows)
             span = part.analysis.result.row_states.span
             progress(span.first + span.rows)
-            del part
+            del part, rows
     for table in tables:
         summary = table.summary(stream)
         if summary is not None:
@@ -179,15 +183,47 @@ def _verdicts(part: PartRows, own: slice) -> Columns:
 
 
 class _Files:
-    """The files of some tables in some formats, which are begun with their first rows."""
+    """The files of some tables in some formats, which are begun with their first rows.
+
+    A thread writes them in the order in which they are given, while the caller solves the rows of
+    the next part; it waits where those before are not written yet, so that two parts are held.
+    """
 
     def __init__(self, formats: Sequence[str], output: OutputFolder, style: CsvStyle) -> None:
         self._formats, self._output, self._style = formats, output, style
         self._room = TextRoom()
         self._writers: dict[str, list[tuple[TableWriter, OutputFile]]] = {}
+        self._waiting: SimpleQueue[list[tuple[Columns, Sequence[str]]] | None] = SimpleQueue()
+        self._free = Semaphore(1)
+        self._error: BaseException | None = None
+        # an interrupt ends the process without it
+        self._thread = Thread(target=self._write_all, name="tables", daemon=True)
 
-    def write(self, table: Columns, whole: Sequence[str] = ()) -> None:
-        """Adds rows to the files of a table; columns of the labels `whole` hold whole numbers."""
+    def write(self, tables: list[tuple[Columns, Sequence[str]]]) -> None:
+        """Adds rows of a part to the files of tables; columns of the labels beside a table hold
+        whole numbers.
+
+        Raises:
+            UsageError: a file cannot be written, now or of the part before.
+        """
+        self._free.acquire()
+        if self._error is not None:
+            raise self._error
+        if not self._thread.ident:
+            self._thread.start()
+        self._waiting.put(tables)
+
+    def _write_all(self) -> None:
+        while (tables := self._waiting.get()) is not None:
+            try:
+                for table, whole in tables if self._error is None else ():
+                    self._write(table, whole)
+            except BaseException as error:  # raised where rows are given
+                self._error = error
+            del tables
+            self._free.release()
+
+    def _write(self, table: Columns, whole: Sequence[str]) -> None:
         if table.name not in self._writers:
             heading = heading_of(table, whole)
             self._writers[table.name] = [self._begun(heading, name) for name in self._formats]
@@ -208,11 +244,21 @@ class _Files:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if self._thread.ident:
+            self._waiting.put(None)
+            self._thread.join()
+        failed = self._error if kind is None else None
+        if failed is not None:
+            kind, error, trace = type(failed), failed, failed.__traceback__
         begun = [each for writers in self._writers.values() for each in writers]
-        for writer, _ in () if kind is not None else begun:
-            writer.end()
-        for _, file in begun:
-            file.__exit__(kind, error, trace)
+        try:
+            for writer, _ in () if kind is not None else begun:
+                writer.end()
+        finally:
+            for _, file in begun:
+                file.__exit__(kind, error, trace)
+        if failed is not None:
+            raise failed
 
 
 ENDS = 30

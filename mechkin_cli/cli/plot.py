@@ -107,7 +107,7 @@ def listed(text: str) -> list[str]:
 def _run(model: Model, run: str | None, mode: str | None) -> Analysis:
     """The run that is named, or the first."""
     name = model.runs[0] if run is None else run
-    return model.analyze(mode=mode) if name == SWEEP else model.respond(name, mode=mode)
+    return model.analyze(mode=mode) if name == SWEEP else model.run_free(name, mode=mode)
 
 
 def _tables(

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis, Stream
     from mechkin_cli.mechanism import Joint, Problem, Wanted
     from mechkin_cli.structure import SolverGraph
+    from mechkin_cli.sweep import Result
     from mechkin_cli.tables import ColumnErrors, Summary
 
 
@@ -191,7 +192,8 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     if analysis.run == SWEEP:
         rows = [("driven", _driven(analysis.model.problem))]
     else:
-        name = f"{name}, response {analysis.run}"
+        word = "equilibria" if _rests(analysis) else "response"
+        name = f"{name}, {word} {analysis.run}"
         rows = [("free", _free(analysis))]
     rows.append(("loops", _loops(analysis.model.problem, result.graph)))
     if result.mode:
@@ -199,13 +201,15 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     verdicts = RunVerdicts.of(result)
     worst = dict(verdicts.worst)
     if analysis.run != SWEEP:
-        off = np.asarray(result.quantity("row.energy_error").value)
+        off = np.asarray(result.quantity(f"row.{result.measure}").value)
         if np.isfinite(off).any():
-            worst["energy error"] = float(off[np.isfinite(off)].max())
+            worst[result.measure.replace("_", " ")] = float(off[np.isfinite(off)].max())
     rows += [("rows", _rows(verdicts)), ("worst", _worst(worst))]
     if analysis.run == SWEEP and result.is_certified:
         rows.append(("proof", analysis.certificate.words))
-    if analysis.run != SWEEP:
+    if _rests(analysis):
+        rows.insert(-1, ("found", _found(result)))
+    elif analysis.run != SWEEP:
         rows.insert(-1, ("ended", _ended(analysis)))
     if errors:
         rows.append(("errors", errors_line(analysis)))
@@ -247,6 +251,22 @@ def _free(analysis: Analysis) -> str:
     return "; ".join(parts)
 
 
+def _rests(analysis: Analysis) -> bool:
+    """Whether a run is one of equilibria."""
+    own = analysis.model.design
+    return analysis.run != SWEEP and own.response(analysis.run).search is not None
+
+
+def _found(result: Result) -> str:
+    """How many equilibria there are, and of which kinds."""
+    kinds = Counter(event.partition(" ")[0] for event in result.events if event)
+    count = sum(kinds.values())
+    if not count:
+        return "no equilibrium"
+    words = ", ".join(f"{number} {kind}" for kind, number in kinds.items())
+    return f"{count} equilibri{'um' if count == 1 else 'a'}: {words}"
+
+
 def _ended(analysis: Analysis) -> str:
     """By which stop, or at the last moment asked for, or before it."""
     result = analysis.result
@@ -278,7 +298,11 @@ def _driven(problem: Problem) -> str:
     """How many freedoms are driven, by which inputs, and Kutzbach's count where it differs."""
     mechanism = problem.mechanism
     count = mechanism.kutzbach
-    inputs = [driven.name for driven in problem.motion.inputs]
+    rest = problem.motion.rest
+    free = () if rest is None else rest.inputs
+    every = problem.motion.inputs
+    inputs = [one.name for number, one in enumerate(every) if number not in free]
+    resting = [every[number].name for number in free]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
     words = [spin.idle_words for spin in mechanism.told_spins]
@@ -287,7 +311,9 @@ def _driven(problem: Problem) -> str:
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
     more = len(words) - IDLE_SHOWN
     idle += f"; and {more} more idle" if more > 0 else ""
-    return (text if count == len(inputs) else f"{text} (Kutzbach's count: {count})") + idle
+    if resting:
+        text += f", at rest: {', '.join(resting)}"
+    return (text if count == len(every) else f"{text} (Kutzbach's count: {count})") + idle
 
 
 def _loops(problem: Problem, graph: SolverGraph) -> str:
@@ -497,6 +523,8 @@ def _positions(analysis: Analysis) -> str:
         nodes = f"{counted(result.nodes, 'node')} followed, the rest filled in between"
         return f"positions: {result.rows} rows, {nodes}"
     response = analysis.model.design.response(analysis.run)
+    if response.search is not None:
+        return f"positions: {result.rows} places, found where the loads balance"
     step = f"a tolerance of {response.tolerance:g}"
     if response.fixed_step is not None:
         step = f"steps of {response.fixed_step:g} s"

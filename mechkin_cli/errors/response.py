@@ -41,6 +41,7 @@ from mechkin_cli.mechanism import Varying, response_quantities
 from mechkin_cli.plan import Demand
 from mechkin_cli.response import ResponseResult, integrate, prepare, watched_stop
 from mechkin_cli.session import Ask, Chart, PreciseConstants, PreciseInputs, RowInputs
+from mechkin_cli.statics import EquilibriumResult
 from mechkin_cli.tape import DoubleDoubles, TraceLost, double_doubles, exactly
 
 if TYPE_CHECKING:
@@ -50,6 +51,11 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep import Result
 
+
+BALANCED = (
+    "the place of an equilibrium is found to a tolerance: row.imbalance tells how far loads balance"
+)
+"""Why rows of equilibria are not repeated."""
 
 DENSE = 16
 """Moments to a step of the run in doubles at which the turns of cut joints are looked up: they
@@ -62,6 +68,8 @@ def repetition(result: Result) -> Repeated:
     Raises:
         NotRepeated: why it is not repeated.
     """
+    if isinstance(result, EquilibriumResult):
+        raise NotRepeated(BALANCED)
     if not isinstance(result, ResponseResult):
         return Repeated(result, wide_run(result))
     if result.problem.mechanism.frictions:

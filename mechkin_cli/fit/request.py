@@ -35,8 +35,18 @@ def run_of(problem: Problem, place: str, given: Any) -> tuple[str, Problem]:
     except UsageError as error:
         raise UsageError(f"{place}: run: {error}") from None
     if run == SWEEP:
+        if problem.motion.rest is not None:
+            raise UsageError(
+                f"{place}: the sweep has coordinates at rest (motion: rest:), which a fit does not "
+                "find; write equilibria: with near:, and name that run"
+            )
         return run, problem
-    return run, response_problem(problem, problem.responses[run])
+    response = problem.responses[run]
+    if response.search is not None and response.search.window:
+        raise UsageError(
+            f"{place}: {run} finds any number of equilibria in a window; write near: instead"
+        )
+    return run, response_problem(problem, response)
 
 
 def quantity_of(

@@ -214,8 +214,12 @@ def _why_fixed(problem: Problem, run: str) -> str | None:
     if run == SWEEP:
         if problem.follow is not None:
             return "the file leaves loops out, and which ones depends on what is asked for"
+        if problem.motion.rest is not None:
+            return "coordinates rest in it where the loads balance"
         return None
     response = problem.responses[run]
+    if response.search is not None:
+        return "its rows are where the loads balance"
     if response.driven:
         return "laws of time drive coordinates in it"
     return "coordinates are held in it" if response.held else None

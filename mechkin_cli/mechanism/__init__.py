@@ -60,7 +60,7 @@ __getattr__, __dir__ = lazy_names(
         "model": "Amount Bushing Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring "
         "Tensor UPPER_HALF Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "
-        "ORDERS Parameter Span",
+        "ORDERS Parameter Rest Span",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "
         "FrictionLaw JointType Loss Motion Part Rubbing SECOND Screw rubbing_words screws_at",
         "pairs": "FREE JOINT_TYPES PLANE_JOINT_TYPES PLAY PLAY_ANGLE dimension_of guide_letter "
@@ -69,10 +69,10 @@ __getattr__, __dir__ = lazy_names(
         "response_problem undefined_laws",
         "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "
         "bearing_load coordinate_quantities effort_quantity friction_states read_for "
-        "response_quantities strands_of",
+        "response_quantities resting_quantities strands_of",
         "relation": "Arm Extent Fleet Follower Mesh Relation Swing Tension Term",
-        "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
-        "ResponseProblem SlopeEnd StartValue Stop TurnsEnd",
+        "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd EquilibriumSearch Flywheel "
+        "Harmonics LoadWork ResponseProblem SlopeEnd StartValue Stop TurnsEnd",
         "track": "Track",
         "vectors": "Frame GROUND Line Vector ZERO add cross dot eliminated frame_about norm "
         "perpendicular scale subtract turned_shortest turned_tensor unit upright",

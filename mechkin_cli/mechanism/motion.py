@@ -16,11 +16,12 @@ from mechkin_cli.tolerances import AT_LIMIT
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.diagnostics import Place
+    from mechkin_cli.diagnostics import Diagnostic, Place
     from mechkin_cli.mechanism.constraint import InputConstraint
     from mechkin_cli.show import Floats
     from mechkin_cli.tape import ExactRows, Tape
     from mechkin_cli.units import Dimension
+    from mechkin_cli.verdict import Status
 
 
 ORDERS = ("", "_dot", "_ddot", "_dddot")
@@ -114,6 +115,19 @@ class Span(NamedTuple):
     run_rows: int
 
 
+class Rest(NamedTuple):
+    """Which inputs of a sweep nothing drives, by number: in each row they are where the loads
+    balance. `solved`: the rows' values are those; then the rows from `first` to `last` have one,
+    and the `ends` say with which status and words the others have none."""
+
+    inputs: tuple[int, ...]
+    solved: bool = False
+    first: int = 0
+    last: int = 0
+    ends: tuple[tuple[Status, Diagnostic], ...] = ()
+    notes: tuple[Diagnostic, ...] = ()
+
+
 class MotionInputs(NamedTuple):
     """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
     `course` where inputs move by laws or follow others; `paths` are all inputs as functions of each
@@ -121,7 +135,8 @@ class MotionInputs(NamedTuple):
     (constraints, rows) are the rates of the input by its leader. `unrated` are the inputs that rest
     only since the file gives them no rate. `grid`: how many values each of the two inputs has whose
     pairs are the rows, the slow one first. Of a part of a longer run `span` says which it is, and
-    `leader` the number of the run's leading input."""
+    `leader` the number of the run's leading input. `rest`: what nothing drives, where there is
+    any."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
@@ -134,6 +149,7 @@ class MotionInputs(NamedTuple):
     grid: tuple[int, int] | None = None
     span: Span | None = None
     leader: int | None = None
+    rest: Rest | None = None
 
     def part(self, first: int, last: int) -> MotionInputs:
         """The rows from `first` to `last`, both included, of a motion that is no grid."""

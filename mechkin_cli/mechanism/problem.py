@@ -41,6 +41,7 @@ from mechkin_cli.mechanism.quantities import (
     bearing_catalogue,
     catalogue,
     response_quantities,
+    resting_quantities,
 )
 from mechkin_cli.mechanism.wanted import Wanted
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
@@ -102,8 +103,11 @@ class Problem:
     @property
     def acting(self) -> Sequence[tuple[str, str]]:
         """Where efforts act (joint, coordinate): at actuators, else at the inputs."""
-        drives = self.mechanism.drives
-        return self.motion.driven if drives is None else drives.acting
+        drives, rest = self.mechanism.drives, self.motion.rest
+        if drives is not None:
+            return drives.acting
+        free = () if rest is None else rest.inputs
+        return [at for number, at in enumerate(self.motion.driven) if number not in free]
 
     @cached_property
     def has_idle(self) -> bool:
@@ -254,7 +258,10 @@ class Problem:
             moving = [*self.response.independent, *self.response.driven_at]
             if moving:
                 found |= coefficient_catalogue(linear, moving, moving[0])
-            found |= response_quantities() | bearing_catalogue(elements, efforts)
+            own = response_quantities()
+            if self.response.search is not None:
+                own = resting_quantities([name for _, name in self.response.independent])
+            found |= own | bearing_catalogue(elements, efforts)
             return found | {name: known for name, known in derived.items() if known.order < 3}
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(elements, self.acting, timed=motion.time is not None, held=self.held)

@@ -38,7 +38,9 @@ from mechkin_cli.units import (
     LENGTH,
     MOMENT,
     POWER,
+    STIFFNESS,
     TIME,
+    TORSIONAL_STIFFNESS,
     VELOCITY,
     Dimension,
 )
@@ -430,6 +432,23 @@ def response_quantities() -> dict[str, Wanted]:
     return {
         f"row.{kind}": Wanted(f"row.{kind}", kind, "row", dimension, False)
         for kind, dimension in _OF_RESPONSES.items()
+    }
+
+
+def resting_quantities(coordinates: Sequence[str]) -> dict[str, Wanted]:
+    """What rows of equilibria have, by name: the least stiffness against motions of some
+    independent `coordinates`, the lowest natural frequency, and the largest force that does not
+    balance in parts of the largest of those that do."""
+    slides = not any(map(is_angle, coordinates))
+    stiffness = STIFFNESS if slides else TORSIONAL_STIFFNESS
+    told: tuple[tuple[Kind, Dimension], ...] = (
+        ("least_stiffness", stiffness),
+        ("frequency", DIMENSIONLESS / TIME),
+        ("imbalance", DIMENSIONLESS),
+    )
+    return {
+        f"row.{kind}": Wanted(f"row.{kind}", kind, "row", dimension, False)
+        for kind, dimension in told
     }
 
 

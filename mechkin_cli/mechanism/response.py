@@ -1,4 +1,5 @@
-"""A response: what one motion under forces asks for, in SI and checked.
+"""A response: what one motion under forces asks for, in SI and checked; and equilibria, which are
+looked for among the places at which a response could start.
 
 At its first moment the mechanism is assembled with the start's coordinates and the driven ones at
 their values; from there on loads and efforts move what is not driven, up to a stop or the last
@@ -104,9 +105,19 @@ class SlopeEnd:
 Stop = CrossingEnd | DeadCentreEnd | TurnsEnd | SlopeEnd
 
 
+class EquilibriumSearch(NamedTuple):
+    """Where equilibria are looked for: within a `window` (rad, m) of each independent coordinate,
+    all of them, from at least so many `starts` where several are free; without a window near the
+    start, one."""
+
+    window: tuple[Limit, ...] = ()
+    starts: int = 0
+
+
 @dataclass(frozen=True, eq=False)
 class ResponseProblem:
-    """One of the file's responses.
+    """One of the file's responses, or of its equilibria: these have a `search`, and no stops, and
+    all their rows are at one moment.
 
     Attributes:
         name: of the run.
@@ -126,6 +137,7 @@ class ResponseProblem:
         mechanism: with the loads of this run alone, its efforts the last of them.
         load_laws: of the loads of this run.
         held: what holds its idle freedoms.
+        search: of equilibria; None of a motion.
     """
 
     name: str
@@ -142,6 +154,19 @@ class ResponseProblem:
     mechanism: Mechanism
     load_laws: tuple[LoadLaw, ...]
     held: tuple[LockedFreedom, ...] = ()
+    search: EquilibriumSearch | None = None
+
+    @property
+    def section(self) -> str:
+        """The section of the file that it stands in."""
+        return "responses" if self.search is None else "equilibria"
+
+    @property
+    def named(self) -> str:
+        """The key under which its independent coordinates stand."""
+        if self.search is None:
+            return "start"
+        return "window" if self.search.window else "near"
 
     @property
     def rows(self) -> int:

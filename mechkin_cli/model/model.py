@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -12,8 +12,11 @@ from mechkin_cli import cams, fit, live, mobility, modes, sensitivities, studies
 from mechkin_cli.analysis import (
     Analysis,
     Design,
+    asking,
+    equilibrium,
     input_values,
     respond,
+    run_free,
     run_name,
     run_sweep,
     stream_sweep,
@@ -22,6 +25,7 @@ from mechkin_cli.arguments import Setting, a_path, a_text, a_whole_number, setti
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem
+from mechkin_cli.model.parameters import Parameters
 from mechkin_cli.model.position import Position, solver_of
 from mechkin_cli.session import Session
 from mechkin_cli.show import Listed, Listing, Named
@@ -48,47 +52,12 @@ if TYPE_CHECKING:
     from mechkin_cli.vibration import Vibration
 
 
-class Parameters(Listed, Mapping[str, float]):
-    """The parameters of a model by name: values in the file's units, in the file's order.
-
-    Example:
-        >>> from mechkin_cli import load
-        >>> given = load("mechanisms/dissertation/rcsr.yaml").parameters
-        >>> given["P1"], given.unit("P1")
-        (0.5, 'in')
-    """
-
-    def __init__(self, problem: Problem) -> None:
-        self._known, self._units = problem.parameters, problem.units
-
-    def __getitem__(self, name: str) -> float:
-        quantity = self._known[name]
-        in_si = float(quantity.value)  # type: ignore[arg-type]
-        return self._units.from_si(in_si, quantity.dimension)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._known)
-
-    def __len__(self) -> int:
-        return len(self._known)
-
-    def unit(self, name: str) -> str:
-        """The unit of a parameter in the file's units, "" of a pure number."""
-        return self._units.label(self._known[name].dimension)
-
-    @property
-    def listing(self) -> Listing:
-        """Names, values and units."""
-        rows = tuple((name, f"{value:.10g}", self.unit(name)) for name, value in self.items())
-        head = f"{len(rows)} parameter{'' if len(rows) == 1 else 's'}"
-        return Listing(head, ("parameter", "value", "unit") if rows else (), rows)
-
-
 class Model(Listed):
     """A checked mechanism file, as `mk.load` and `mk.loads` return it.
 
-    `analyze` runs its sweep, `respond` its responses; `modes`, `ranges` and `mobility` tell how it
-    can be assembled and moved. Values are in the file's units throughout.
+    `analyze` runs its sweep, `respond` its responses, and `equilibrium` finds where its loads
+    balance; `modes`, `ranges` and `mobility` tell how it can be assembled and moved, `vibration`
+    how it vibrates. Values are in the file's units throughout.
 
     Attributes:
         design: the file with the values of its parameters, in SI and in the kernel.
@@ -141,7 +110,8 @@ class Model(Listed):
 
     @property
     def runs(self) -> tuple[str, ...]:
-        """The file's runs by name: `sweep`, unless it has responses alone, then its responses."""
+        """The file's runs by name: `sweep`, unless it has others alone, then its responses and its
+        equilibria."""
         return self.built.runs
 
     @property
@@ -335,6 +305,72 @@ class Model(Listed):
             self, name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
         )
 
+    def equilibrium(
+        self,
+        name: str | None = None,
+        quantities: Iterable[str] | None = None,
+        *,
+        near: Mapping[str, Setting] | None = None,
+        window: Mapping[str, tuple[Setting, Setting]] | None = None,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Analysis:
+        """Places at which all loads balance: those of the file's `equilibria:`, or others.
+
+        Args:
+            name: of the file's equilibria; None: the only ones.
+            quantities: names to compute beside what its tables read.
+            near: instead of the file's, one equilibrium from a start: as many independent
+                coordinates as are free, in the file's units or such as "0.5 rad".
+            window: instead of the file's, all equilibria within the least and the largest values
+                of such coordinates, in every assembly mode.
+            tables: names of its tables that are wanted; None: all, [] none.
+            mode: assembly mode at the start instead of the file's choice.
+            lanes: width of the kernel's packs, 0 for the widest (no answer depends on it).
+            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+
+        Returns:
+            As `analyze`, with a row for each equilibrium, at which nothing moves; `row.event` says
+            whether it is stable. Where none was found there is one row without a place.
+
+        Raises:
+            InvalidFile: too few coordinates are named, or too many.
+            UsageError: unknown equilibria, tables, quantities or modes, or invalid values.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> pin = {"type": "R", "links": ["ground", "bob"], "point": [0, 0, 0]}
+            >>> m = load({
+            ...     "format": 1,
+            ...     "links": {"bob": {"mass": 2, "center_of_mass": [0, -0.25, 0]}},
+            ...     "joints": {"A": {**pin, "axis": [0, 0, 1]}},
+            ...     "loads": [{"type": "gravity", "g": [0, -9.81, 0]}],
+            ... })
+            >>> r = m.equilibrium(window={"A.theta": (-90, 200)})
+            >>> abs(r["A.theta"]).round(6).tolist(), r["row.event"].tolist()
+            ([0.0, 180.0], ['stable', 'unstable'])
+        """
+        model = self
+        if near is not None or window is not None:
+            name, design = asking(self.design, near, window)
+            model = self.of(design)
+        return equilibrium(
+            model, name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
+        )
+
+    def run_free(
+        self, name: str, *, tables: Sequence[str] | None = None, mode: str | None = None
+    ) -> Analysis:
+        """A response or equilibria by name: what `respond` and `equilibrium` give.
+
+        Raises:
+            InvalidFile: too few coordinates are named, or too many.
+            UsageError: an unknown run, table or mode.
+        """
+        return run_free(self, name, tables=tables, mode=mode)
+
     def vibration(
         self,
         run: str | None = None,
@@ -371,7 +407,7 @@ class Model(Listed):
         """All runs of the file, or one.
 
         Args:
-            run: `sweep`, or a response; None: all.
+            run: `sweep`, or the name of another; None: all.
             mode: assembly mode at the first row instead of the file's choice: its letter, or
                 home for the one drawn.
 
@@ -381,7 +417,7 @@ class Model(Listed):
         """
         runs = self.runs if run is None else (run_name(self.runs, run),)
         return [
-            self.analyze(mode=mode) if name == SWEEP else self.respond(name, mode=mode)
+            self.analyze(mode=mode) if name == SWEEP else self.run_free(name, mode=mode)
             for name in runs
         ]
 

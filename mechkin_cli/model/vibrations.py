@@ -14,19 +14,31 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis, Design
     from mechkin_cli.arguments import Setting
 
-    class _Model(Protocol):
-        """What is asked of a `Model`."""
 
-        @property
-        def design(self) -> Design: ...
-        @property
-        def runs(self) -> tuple[str, ...]: ...
-        def analyses(self, run: str | None = None) -> list[Analysis]: ...
-        def with_parameters(self, values: Mapping[str, Setting]) -> _Model: ...
+class Moving(Protocol):
+    """What is asked of a model."""
+
+    @property
+    def design(self) -> Design:
+        """The checked file with the values of its parameters."""
+        ...
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """The names of its runs."""
+        ...
+
+    def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
+        """All runs, or one."""
+        ...
+
+    def with_parameters(self, parameters: Mapping[str, Setting]) -> Moving:
+        """The model with other values of some parameters."""
+        ...
 
 
 def vibration(
-    model: _Model,
+    model: Moving,
     run: str | None,
     row: int,
     coordinates: Sequence[str] | None,
@@ -50,7 +62,7 @@ def vibration(
     return Vibration(freed(analysis.result, row, coordinates, held), again)
 
 
-def _first_run(model: _Model) -> str:
+def _first_run(model: Moving) -> str:
     """The first equilibria of the file, else its first run."""
     responses = model.design.at_responses.problem.responses
     resting = (run for run, one in responses.items() if getattr(one, "search", None) is not None)

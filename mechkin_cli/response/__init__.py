@@ -14,7 +14,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "integration": "Beginning Impact free_session integrate watched_stop with_loads",
-        "result": "ENERGIES ResponseResult",
+        "result": "ENERGIES FreeResult ResponseResult",
         "runs": "Prepared integrated prepare read respond",
     },
 )

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from mechkin_cli.tables import Columns
 
 
-def _as_input(response: ResponseResult, joint: str, coordinate: str) -> DrivenInput:
+def _as_input(response: FreeResult, joint: str, coordinate: str) -> DrivenInput:
     """A coordinate with its rates and accelerations, zero in rows without a solution."""
     rows, dimension, orders = response.rows, dimension_of(coordinate), []
     for suffix in ORDERS[:3]:
@@ -64,7 +64,115 @@ OTHER_LOADS = 100
 ENERGIES = ("row.kinetic_energy", "row.potential_energy")
 
 
-class ResponseResult(Result):
+class FreeResult(Result):
+    """Rows in which loads and given efforts decide where what is free is, or how it moves.
+
+    Args:
+        session: of what is free, with the driven coordinates at the rows.
+        start: the first assembly, of a session `chosen` with the start's coordinates as inputs.
+        rows: the rows.
+        chart: about each row.
+        response: the file's.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        start: AssemblyStart,
+        rows: SweepRows,
+        *,
+        chosen: Session,
+        chart: Chart,
+        response: ResponseProblem,
+    ) -> None:
+        super().__init__(session, start, rows)
+        self.chosen, self.chart, self.response = chosen, chart, response
+        self.measure = "energy_error" if response.search is None else "imbalance"
+
+    @cached_property
+    def solved(self) -> Bools:
+        """Rows that were reached and have a position (rows,)."""
+        return self.row_states.reached & super().solved
+
+    @cached_property
+    def mode(self) -> str:
+        """The letter of the first assembly where a short search proves it; else `near` or
+        `home`."""
+        return mode_letter(self.chosen, self.start, thorough=False)
+
+    @cached_property
+    def letter(self) -> str:
+        """The letter of the first assembly, searched for if it is not known yet."""
+        return mode_letter(self.chosen, self.start)
+
+    def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
+        chart = self.chart
+        if not session.problem.mechanism.frictions:  # nothing rubs in that session
+            chart = chart._replace(friction=chart.friction[:0])
+        return super()._row_inputs(session, inputs)._replace(chart=chart)
+
+    @cached_property
+    def as_driven(self) -> Result:
+        """The same rows as a sweep of the start's coordinates, by whose accelerations the
+        coefficients of the equations of motion are; near a dead centre of them there are none: a
+        sweep with these states, rates and accelerations, on the same tree."""
+        own, moving = self.row_states, self.problem.motion
+        free = [_as_input(self, *at) for at in self.response.independent]
+        motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
+        session = self.chosen.moved(replace(self.chosen.problem, motion=motion))
+        rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
+        rows.states, rows.reached, rows.status = own.states, own.reached, own.status
+        # cut joints have the same turns; the tree's angles have theirs in the states
+        closing = own.turns[: own.turns.shape[0] - len(self.session.structure.tree_slots)]
+        still = np.zeros((len(session.structure.tree_slots), moving.rows))
+        rows.turns = np.concatenate([closing, still])
+        return Result(session, self.start, rows)
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        wanted = self.problem.quantities().get(name)
+        if wanted is not None and wanted.kind in DRIVEN_KINDS:
+            return self.as_driven.quantity(name)
+        if wanted is not None and self.is_given(wanted):
+            return Quantity(self._effort(wanted), wanted.dimension)
+        return super().quantity(name)
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+        super().read(
+            one for one in wanted if one.kind not in DRIVEN_KINDS and not self.is_given(one)
+        )
+
+    def is_given(self, quantity: Wanted) -> bool:
+        """Whether a quantity is one of the efforts that the file gives."""
+        return quantity.kind == "effort" and bool(self._amounts(quantity))
+
+    @property
+    def _loads(self) -> ResponseProblem:
+        """The run with the loads of the rows."""
+        return self.response
+
+    def _amounts(self, wanted: Wanted) -> list[Amount]:
+        at = (wanted.owner, wanted.coordinate)
+        return [e.amount for e in self._loads.efforts if e.acts_at == at]
+
+    def _effort(self, wanted: Wanted) -> Floats:
+        """The sum of the given efforts along a coordinate over the rows."""
+        total = np.zeros(self.rows)
+        for amount in self._amounts(wanted):
+            if isinstance(amount, Varying):
+                law = self._loads.load_laws[amount.number]
+                total = total + law_value(law, self.quantity, self.rows)
+            else:
+                total = total + amount
+        return np.where(self.solved, total, np.nan)
+
+
+class ResponseResult(FreeResult):
     """The rows of a response with a position and a verdict each.
 
     Args:
@@ -93,9 +201,9 @@ class ResponseResult(Result):
         report: MotionReport | None,
         rebounds: Sequence[Rebound] = (),
     ) -> None:
-        super().__init__(session, start, rows)
-        self.chosen, self.chart, self.exchanged = chosen, chart, work
-        self.events, self.response, self.report = tuple(events), response, report
+        super().__init__(session, start, rows, chosen=chosen, chart=chart, response=response)
+        self.exchanged = work
+        self.events, self.report = tuple(events), report
         self.rebounds = tuple(rebounds)
         self.other_loads: tuple[OtherLoads, ...] = ()
 
@@ -134,28 +242,6 @@ class ResponseResult(Result):
         return impact_table(self.session, self.response.name, self.rebounds)
 
     @cached_property
-    def solved(self) -> Bools:
-        """Rows that were reached and have a position (rows,)."""
-        return self.row_states.reached & super().solved
-
-    @cached_property
-    def mode(self) -> str:
-        """The letter of the first assembly where a short search proves it; else `near` or
-        `home`."""
-        return mode_letter(self.chosen, self.start, thorough=False)
-
-    @cached_property
-    def letter(self) -> str:
-        """The letter of the first assembly, searched for if it is not known yet."""
-        return mode_letter(self.chosen, self.start)
-
-    def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
-        chart = self.chart
-        if not session.problem.mechanism.frictions:  # nothing rubs in that session
-            chart = chart._replace(friction=chart.friction[:0])
-        return super()._row_inputs(session, inputs)._replace(chart=chart)
-
-    @cached_property
     def input_rates(self) -> Mapping[str, Floats]:
         """As of a sweep; and the start's coordinates, which the first row has as the file writes
         them."""
@@ -179,23 +265,6 @@ class ResponseResult(Result):
             column[0] = short
         return column
 
-    @cached_property
-    def as_driven(self) -> Result:
-        """The same rows as a sweep of the start's coordinates, by whose accelerations the
-        coefficients of the equations of motion are; near a dead centre of them there are none: a
-        sweep with these states, rates and accelerations, on the same tree."""
-        own, moving = self.row_states, self.problem.motion
-        free = [_as_input(self, *at) for at in self.response.independent]
-        motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
-        session = self.chosen.moved(replace(self.chosen.problem, motion=motion))
-        rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
-        rows.states, rows.reached, rows.status = own.states, own.reached, own.status
-        # cut joints have the same turns; the tree's angles have theirs in the states
-        closing = own.turns[: own.turns.shape[0] - len(self.session.structure.tree_slots)]
-        still = np.zeros((len(session.structure.tree_slots), moving.rows))
-        rows.turns = np.concatenate([closing, still])
-        return Result(session, self.start, rows)
-
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
 
@@ -205,23 +274,12 @@ class ResponseResult(Result):
         of_response = response_quantities().get(name)
         if of_response is not None:
             return Quantity(getattr(self, of_response.kind), of_response.dimension)
-        wanted = self.problem.quantities().get(name)
-        if wanted is not None and wanted.kind in DRIVEN_KINDS:
-            return self.as_driven.quantity(name)
-        if wanted is not None and self.is_given(wanted):
-            return Quantity(self._effort(wanted), wanted.dimension)
         return super().quantity(name)
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""
         own = response_quantities()
-        super().read(
-            quantity
-            for quantity in wanted
-            if quantity.name not in own
-            and quantity.kind not in DRIVEN_KINDS
-            and not self.is_given(quantity)
-        )
+        super().read(quantity for quantity in wanted if quantity.name not in own)
 
     def is_given(self, quantity: Wanted) -> bool:
         """Whether a quantity is one of the response's efforts."""
@@ -270,18 +328,3 @@ class ResponseResult(Result):
         """The response with the rows' loads, or with the others of an alternative."""
         shift = 0 if self._alternative is None else self.shifts[self._alternative]
         return self.response if shift < OTHER_LOADS else self.other_loads[shift - OTHER_LOADS][1]
-
-    def _amounts(self, wanted: Wanted) -> list[Amount]:
-        at = (wanted.owner, wanted.coordinate)
-        return [e.amount for e in self._loads.efforts if e.acts_at == at]
-
-    def _effort(self, wanted: Wanted) -> Floats:
-        """The sum of the response's efforts along a coordinate over the rows."""
-        total = np.zeros(self.rows)
-        for amount in self._amounts(wanted):
-            if isinstance(amount, Varying):
-                law = self._loads.load_laws[amount.number]
-                total = total + law_value(law, self.quantity, self.rows)
-            else:
-                total = total + amount
-        return np.where(self.solved, total, np.nan)

@@ -54,7 +54,7 @@ from mechkin_cli.response.resting import (
     repeated,
     with_contacts,
 )
-from mechkin_cli.response.result import ENERGIES, ResponseResult
+from mechkin_cli.response.result import ENERGIES, FreeResult, ResponseResult
 from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, input_unit, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
@@ -330,7 +330,9 @@ def _prepared(chosen: Session, response: ResponseProblem) -> Prepared:
     if not isinstance(begun, Beginning):
         start = replace(start, diagnostics=[*start.diagnostics, begun])
         return Prepared(response, chosen, start, free, None, None)
-    return Prepared(response, chosen, start, free, begun, driven_laws(free, response))
+    # equilibria are looked for at one moment
+    laws = driven_laws(free, response) if response.search is None else None
+    return Prepared(response, chosen, start, free, begun, laws)
 
 
 def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseResult]:
@@ -586,7 +588,7 @@ def _nothing(one: Prepared) -> ResponseResult:
     )
 
 
-def read(result: ResponseResult, quantities: Iterable[str]) -> None:
+def read(result: FreeResult, quantities: Iterable[str]) -> None:
     """Closes the rows once more, judges them, and reads some quantities."""
     known = result.problem.quantities()
     requested: list[Wanted] = [known[name] for name in read_for(quantities, known)]

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "base": "OLD_KEYS Renamed fields_of section_of",
+        "base": "OLD_KEYS Renamed fields_of section_of section_with",
         "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling Flanks FollowerSection "
         "FunctionCoupling GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling "
         "TableCoupling",
@@ -55,7 +55,7 @@ __getattr__, __dir__ = lazy_names(
         "SweptInput TableLaw TimeSection WithRates",
         "plane": "in_space",
         "renamed": "up_to_date",
-        "responses": "HeldCoordinate ListedTime",
+        "responses": "CoordinateWindow Equilibrium HeldCoordinate ListedTime Response",
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",
         "study": "StudyFile validate_study",
         "tables": "Coefficients",

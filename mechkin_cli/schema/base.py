@@ -87,6 +87,12 @@ def section_of(kind: type[AnySection], **values: Any) -> AnySection:
     return section
 
 
+def section_with(section: AnySection, **values: Any) -> AnySection:
+    """A section with other values, which are known to be valid."""
+    known = {key: getattr(section, one.name) for key, one in fields_of(type(section)).items()}
+    return section_of(type(section), **{**known, **values})
+
+
 class FieldOfSection(NamedTuple):
     """A key of a section: the name of its field, the values it may have, its default."""
 

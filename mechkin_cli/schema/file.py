@@ -9,7 +9,7 @@ from mechkin_cli.schema.limits import CoordinateLimit
 from mechkin_cli.schema.links_joints import ChainRow, Joint, Link
 from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import AssemblySection, MotionSection
-from mechkin_cli.schema.responses import Response
+from mechkin_cli.schema.responses import Equilibrium, Response
 from mechkin_cli.schema.scalars import (
     METRIC,
     AnyDimension,
@@ -63,6 +63,8 @@ class AnyFile(Section):
     nearest to it."""
     responses: Annotated[dict[Name, Response], Rule(free_run_names)] = NOTHING
     """Motions under forces, by name; left out, none."""
+    equilibria: Annotated[dict[Name, Equilibrium], Rule(free_run_names)] = NOTHING
+    """Places at which loads balance, by name; left out, none."""
     actuators: tuple[Coordinate, ...] = ()
     """Where efforts act, at least as many coordinates as freedoms; left out, at the inputs."""
     tables: Annotated[tuple[Table, ...], Rule(differing_names)] = ()
@@ -78,8 +80,22 @@ class AnyFile(Section):
     """Warnings that the file acknowledges; left out, none."""
 
     def check(self) -> None:
-        """No two tables are written to the same files."""
+        """No two tables are written to the same files, and no two runs have one name."""
         refuse_clashes(self.balances, self.tables)
+        self.check_runs()
+
+    def check_runs(self) -> None:
+        """No two runs are written to the same files."""
+        known = {name.casefold() for name in self.responses}
+        for name in self.equilibria:
+            if name.casefold() in known:
+                text = f"a response has the name {name}, too"
+                raise refuse("name-clash", text, "rename it", "equilibria", name)
+
+    @property
+    def free_runs(self) -> "dict[str, Response | Equilibrium]":
+        """The runs whose freedoms loads decide on, by name: responses, then equilibria."""
+        return {**self.responses, **self.equilibria}
 
 
 class MechanismFile(AnyFile):
@@ -114,3 +130,4 @@ class MechanismFile(AnyFile):
         if not self.joints and not self.chain and not self.cylinders:
             raise refuse("no-joints", "the file has no joints", "add joints: (or chain:)")
         refuse_clashes(self.balances, (*self.tables, *self.coefficients))
+        self.check_runs()

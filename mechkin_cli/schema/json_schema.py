@@ -33,6 +33,7 @@ from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.loads import EXAMPLES_OF_BUSHINGS
 from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.renamed import with_old_keys
+from mechkin_cli.schema.responses import EXAMPLES_BY_KEY, EXAMPLES_OF_EQUILIBRIA
 from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
 from mechkin_cli.schema.study import StudyFile
 from mechkin_cli.schema.validation import RESERVED
@@ -140,6 +141,7 @@ _R: Final = {"type": "R", "links": ["ground", "crank"], "point": [0, 0, 0], "axi
 _TURN: Final = {"from": 0, "to": 360, "step": 5, "rate": "10 rad/s"}
 
 BY_KEY: Final[dict[str, Any]] = {
+    **EXAMPLES_BY_KEY,
     "accept": ["unphysical-inertia"],
     "actuators": ["leg1.s", "leg2.s"],
     "across": [0, 0, 1],
@@ -229,6 +231,7 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     **EXAMPLES_OF_BUSHINGS,
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
+    **EXAMPLES_OF_EQUILIBRIA,
     ("Column", "value"): "norm(O1.force)",
     ("Cylinder", "bore"): "50 mm",
     ("Cylinder", "from"): "P",
@@ -479,7 +482,8 @@ def _file(form: type[AnyFile], definitions: Schema) -> Schema:
         reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
         schema["properties"][name]["propertyNames"] = reserved
     barred = {"not": {"pattern": TAKEN_FOR_EDITORS}}
-    schema["properties"]["responses"]["propertyNames"] = barred
+    for name in ("responses", "equilibria"):
+        schema["properties"][name]["propertyNames"] = barred
     return schema
 
 

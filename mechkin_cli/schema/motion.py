@@ -391,6 +391,9 @@ class MotionSection(Section):
     grid: Flag = False
     """`true`: the rows are all pairs of the values of two inputs, the first of which changes once
     the second has run through all of its own; left out, inputs run in step."""
+    rest: tuple[Coordinate, ...] = ()
+    """Independent coordinates that nothing drives: in each row they are where the loads balance,
+    and nothing moves; left out, the inputs drive all that is free."""
 
     @property
     def with_rows(self) -> tuple[str, ...]:
@@ -399,7 +402,17 @@ class MotionSection(Section):
         return tuple(name for name, motion in self.inputs.items() if isinstance(motion, of_rows))
 
     def check(self) -> None:
-        """Laws go with `time`, rows of an input's own do not; a grid has two inputs with rows."""
+        """Laws go with `time`, rows of an input's own do not; a grid has two inputs with rows; what
+        rests is not driven."""
+        for number, name in enumerate(self.rest):
+            if name in self.inputs:
+                text = f"{name} is an input, which is driven, and cannot rest under the loads"
+                raise refuse("rest-and-input", text, "remove it from one of them", "rest", number)
+            if name in self.rest[:number]:
+                raise refuse("named-twice", f"{name} stands twice", "name it once", "rest", number)
+        if self.rest and self.grid:
+            text = "a grid drives all its inputs, and nothing rests in it"
+            raise refuse("rest-in-grid", text, "remove rest, or grid", "rest")
         for name, motion in self.inputs.items():
             has_law = isinstance(motion, tuple(LAWS.values()))
             if has_law and self.time is None:

@@ -1,10 +1,11 @@
-"""`responses:` - motions under forces, by name: where they start, what drives and what ends them.
+"""`responses:` - motions under forces, by name: where they start, what drives and what ends them;
+and `equilibria:` - places at which loads balance.
 
-The motion follows from loads and efforts; `motion.inputs` belongs to the sweep and holds nothing
+What is free follows from loads and efforts; `motion.inputs` belongs to the sweep and holds nothing
 here.
 """
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
@@ -180,3 +181,78 @@ class Response(Section):
         if self.tolerance is not None and self.fixed_step is not None:
             text = "tolerance and fixed_step both choose the steps"
             raise refuse("two-choices", text, "keep one of them", "fixed_step")
+
+
+class CoordinateWindow(Section):
+    """The values of a coordinate within which equilibria are looked for."""
+
+    tag = "(window)"
+    advice: ClassVar[dict[str, str]] = {
+        "step": "a window has no rows: write from: and to: alone",
+        "min": "write from: for the least value",
+        "max": "write to: for the largest value",
+    }
+
+    first: AngleOrLength
+    """Least value."""
+    last: AngleOrLength
+    """Largest value."""
+
+
+class Equilibrium(Section):
+    """Places at which all loads balance: one near a start, or all within a window."""
+
+    editors: ClassVar[dict[str, Any]] = {"not": {"required": ["near", "window"]}}
+    advice: ClassVar[dict[str, str]] = {
+        "start": "where the search starts stands under near: {A.theta: 20}",
+        "inputs": "coordinates that are held stand under driven: {A.theta: {at: 20}}",
+        "loads": "loads stand in the file's loads:, with runs: [NAME] for these equilibria alone",
+        "stop": "only a response has a stop",
+        "tables": "tables stand in the file's tables:, with run: NAME",
+        "modes": "a window takes all assembly modes; mode: A chooses that of one equilibrium",
+    }
+
+    near: dict[Coordinate, AngleOrLength] = NOTHING
+    """Where the search for one equilibrium starts: as many independent coordinates as there are
+    free freedoms; left out, with the drawing."""
+    mode: Text | None = None
+    """Start in the assembly mode of this letter, or the one drawn: `home`; left out, the file's
+    choice."""
+    window: dict[Coordinate, CoordinateWindow] = NOTHING
+    """Find all equilibria within these values of as many independent coordinates as there are free
+    freedoms, in every assembly mode; left out, one near the start."""
+    starts: Annotated[WholeNumber, Limits(ge=1, le=1_000_000)] | None = None
+    """Least number of places in the window from which the search starts where several freedoms are
+    free; left out, as many as the search needs."""
+    driven: dict[Coordinate, HeldCoordinate] = NOTHING
+    """Coordinates that are held (`at`); left out, none."""
+    efforts: dict[Coordinate, Effort] = NOTHING
+    """Force or torque on coordinates: a number, an expression, or a table over the coordinate; they
+    add to the loads; left out, none."""
+    time: Duration | None = None
+    """The moment for which loads that depend on time are taken; left out, 0."""
+
+    def check(self) -> None:
+        """One of near and window at most; a window takes every mode."""
+        if self.near and self.window:
+            text = "near asks for one equilibrium, window for all"
+            raise refuse("two-choices", text, "keep one of them", "window")
+        if self.window and self.mode is not None:
+            text = "a window takes the equilibria of every assembly mode"
+            raise refuse("two-choices", text, "remove mode, or write near for window", "mode")
+        if self.starts is not None and not self.window:
+            text = "starts are counted in a window, and there is none"
+            raise refuse("starts-without-window", text, "remove starts, or add window", "starts")
+
+
+EXAMPLES_BY_KEY: Final[dict[str, Any]] = {
+    "equilibria": {"ride": {"near": {"A.theta": 20}}},
+    "rest": ["B.s"],
+    "starts": 200,
+    "window": {"A.theta": {"from": -180, "to": 180}},
+}
+EXAMPLES_OF_EQUILIBRIA: Final[dict[tuple[str, str], Any]] = {
+    ("Equilibrium", "time"): "2 s",
+    ("Equilibrium", "driven"): {"A.theta": {"at": "30 deg"}},
+}
+"""Examples of what is written about rest, by key and by section, for editors."""

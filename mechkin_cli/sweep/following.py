@@ -25,11 +25,13 @@ from mechkin_cli.sweep.retracing import (
     unclear_rows,
 )
 from mechkin_cli.sweep.rows import SweepRows
+from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.mechanism import Rest
     from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Floats
 
@@ -71,7 +73,21 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
     if turn is None:
         count_from_first(session, rows)
     rows.signs_before = start.signs
+    if motion.rest is not None:
+        _end_rest(rows, motion.rest)
     return rows
+
+
+def _end_rest(rows: SweepRows, rest: Rest) -> None:
+    """Leaves out the rows in which no place was found at which the loads balance."""
+    rows.diagnostics += rest.notes
+    count = rows.reached.size
+    sides = slice(0, rest.first), slice(rest.last + 1, count)
+    for beyond, (status, why) in zip(sides, rest.ends, strict=False):
+        if status != Status.ok and rows.reached[beyond].any():
+            rows.reached[beyond] = False
+            rows.status[beyond] = status
+            rows.diagnostics.append(why)
 
 
 def _unknown_rows(session: Session) -> SweepRows:

@@ -108,6 +108,7 @@ class Result:
         self.row_states = rows
         self.run_start = session, start
         self.events: tuple[str, ...] = ()
+        self.measure = ""
         self.demand = Demand.POSITION
         self.residual = np.full(rows.reached.size, np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
@@ -186,7 +187,16 @@ class Result:
         written."""
         time = self.problem.motion.time
         inputs = {i.name: i.written for i in self.problem.motion.inputs}
+        for number in self._resting:
+            name = self.problem.motion.inputs[number].name
+            inputs[name] = np.where(self.solved, inputs[name], np.nan)
         return inputs if time is None else {"time": time.written, **inputs}
+
+    @property
+    def _resting(self) -> tuple[int, ...]:
+        """The numbers of the inputs that nothing drives."""
+        rest = self.problem.motion.rest
+        return () if rest is None else rest.inputs
 
     @property
     def length(self) -> float:
@@ -354,7 +364,9 @@ class Result:
         motion = self.problem.motion
         if name == "time" and motion.time is not None:
             return motion.time.values
-        for driven in motion.inputs:
+        for number, driven in enumerate(motion.inputs):
+            if name == driven.name and number in self._resting:
+                return np.where(self.solved, driven.values, np.nan)
             if name == driven.name:
                 return driven.values
             if name.startswith(driven.name) and name in driven.orders:

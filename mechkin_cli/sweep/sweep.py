@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli import idle, tolerances
 from mechkin_cli.assembly import choose_start, rows_of_start
+from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
     DERIVED_KINDS,
@@ -157,6 +158,12 @@ class Sweep:
         verdicts: bool = True,
         unasked: Collection[str] = (),
     ) -> None:
+        rest = session.problem.motion.rest
+        if rest is not None and not rest.solved:
+            raise UsageError(
+                "this sweep has coordinates at rest (motion: rest:), and where they are is found "
+                "by analyze() alone: vary, study, fit and sensitivities take other runs"
+            )
         self.asked = _wanted(session, tuple(dict.fromkeys(quantities)))
         self.unasked = unasked
         if session.problem.follow is not None:

@@ -43,7 +43,8 @@ __getattr__, __dir__ = lazy_names(
         "folder": "Claim OutputFile OutputFolder write_files",
         "json": "json_text runs_record",
         "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_EVENT ROW_NUMBERS ROW_PROOF "
-        "ROW_TEXTS Remark TableLayout chosen counted default_table effort_names row_texts",
+        "ROW_TEXTS Remark TableLayout chosen counted default_table effort_names "
+        "resting_table row_texts",
         "markup": "markdown_bytes rows_table",
         "print": "read_table_text",
         "results": "Results",

@@ -129,8 +129,14 @@ class TableSource(Protocol):
 
     @property
     def events(self) -> Sequence[str]:
-        """What happened at each row of a response, "" where nothing did; () of a sweep."""
+        """What happened at each row of a response, "" where nothing did; whether each equilibrium
+        is stable; () of a sweep."""
         ...
+
+    @property
+    def measure(self) -> str:
+        """The number of a row that tells how well energies or loads balance: `energy_error` of
+        responses, `imbalance` of equilibria, "" of a sweep."""
 
     @property
     def status(self) -> StatusArray:

@@ -28,7 +28,7 @@ ROW_PROOF = "row.proof"
 """A text of the rows of a sweep: what is proven of it."""
 
 ROW_EVENT = "row.event"
-"""A text of the rows of a response: what ended it there."""
+"""A text of the rows of a response: what ended it there; of equilibria: whether it is stable."""
 
 ROW_NUMBER = "row.number"
 """Stands for the number of a printed row, counted from 1, where no column can find it."""
@@ -145,6 +145,15 @@ def default_table(
     names += [ROW_EVENT] if run != SWEEP else []
     columns = tuple(ColumnLayout(name, expressions.parse(name)) for name in names)
     return TableLayout(run, "Coordinates, rates and efforts", columns, run=run)
+
+
+def resting_table(coordinates: Sequence[str], efforts: Collection[str], run: str) -> TableLayout:
+    """The table of equilibria that have none, called after their run: all coordinates, the efforts,
+    and what is told of each equilibrium."""
+    told = ("row.event", "row.least_stiffness", "row.frequency", "row.imbalance")
+    names = [*coordinates, *effort_names(efforts), *told]
+    columns = tuple(ColumnLayout(name, expressions.parse(name)) for name in names)
+    return TableLayout(run, "Coordinates, efforts and stability", columns, run=run)
 
 
 def counted(count: int, noun: str) -> str:

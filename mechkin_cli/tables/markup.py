@@ -169,8 +169,8 @@ def _header(column: TableColumn) -> str:
 
 def rows_table(source: TableSource, run: str = SWEEP) -> Columns:
     """Columns row, the inputs, mode, status, residual, condition, power_error; of a sweep whose
-    proofs were asked for additionally proof. That of a response is called `NAME.rows` and has event
-    and energy_error.
+    proofs were asked for additionally proof. That of another run is called `NAME.rows` and has
+    event and energy_error, or of equilibria imbalance.
 
     Rows count from 1; inputs are in file units, errors and condition without dimension.
     """
@@ -192,8 +192,8 @@ def rows_table(source: TableSource, run: str = SWEEP) -> Columns:
             columns.insert(-3, TableColumn("proof", "", row_words(ROW_PROOF, source)))
         return Columns("rows", "Rows and their verdicts", tuple(columns))
     columns.insert(-3, TableColumn("event", "", row_words(ROW_EVENT, source)))
-    error = np.asarray(source.quantity("row.energy_error").value, dtype=np.float64)
-    columns.append(TableColumn("energy_error", "", error))
+    error = np.asarray(source.quantity(f"row.{source.measure}").value, dtype=np.float64)
+    columns.append(TableColumn(source.measure, "", error))
     return Columns(f"{run}.rows", f"Rows of {run} and their verdicts", tuple(columns))
 
 

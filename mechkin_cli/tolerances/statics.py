@@ -1,4 +1,8 @@
-"""Limits of forces about a place: their derivatives and where they balance."""
+"""Limits of forces about a place, their derivatives and where they balance: steps of a search, when
+it has found an equilibrium, and what is marginal.
+
+Coordinates are in rad and in parts of the mechanism's length unit, forces in N*m by these.
+"""
 
 from __future__ import annotations
 
@@ -12,3 +16,133 @@ place, as a spring that is nearly slack, needs the next ones."""
 FORCE_DIFFERENCE: Final = 1e-9
 """Difference of orders six and eight, in parts of the largest derivative, above which a shorter
 step is tried: that of order eight is then 1e-12 right."""
+
+NEWTON_DIFFERENCE: Final = 1e-4
+"""Step of the differences of second order for the slopes of Newton's steps: right to eight digits,
+so that each step gains eight."""
+
+EQUILIBRIUM_STEP: Final = 1e-11
+"""A Newton step below this, rad or length units, ends the search: the next would be below the
+rounding of a place."""
+
+EQUILIBRIUM_ROUNDING: Final = 1e-14
+"""Forces below this part of the largest about the place are zero to rounding: no step is left at a
+marginal place, to which Newton's steps shrink too slowly."""
+
+EQUILIBRIUM_REACH: Final = 0.5
+"""Longest step of the search, rad or length units: most forces do not change sign twice in it."""
+
+WILD_STEP: Final = 30.0
+"""A Newton step beyond this, rad or length units, says nothing: slopes are near zero. The search
+goes down along the forces instead."""
+
+EQUILIBRIUM_BALANCE: Final = 1e-12
+"""Forces below this part of the largest of one load balance where no step makes them smaller: loads
+are that right at a place that closes to rounding."""
+
+MOST_EQUILIBRIUM_STEPS: Final = 100
+"""Steps of one search: ten to thirty take it around a full turn, six end it; at marginal places
+each leaves two thirds of the way, and sixty leave rounding."""
+
+FAR_EQUILIBRIUM: Final = 1e3
+"""A search this far from its start, in length units, runs away: loads push without bound."""
+
+MARGINAL_STIFFNESS: Final = 1e-9
+"""A stiffness below this part of the largest force and stiffness about it is zero to what forces at
+a place that is found to `EQUILIBRIUM_STEP` tell."""
+
+UNSYMMETRIC_STIFFNESS: Final = 1e-8
+"""A stiffness that is unsymmetric by more than this part of its largest entry is of loads without a
+potential: rounding and differences leave less."""
+
+INDIFFERENT_REACH: Final = 0.1
+"""How far along a motion without stiffness the loads are looked at, rad or length units: where they
+still balance there, the equilibrium is indifferent."""
+
+SAME_EQUILIBRIUM: Final = 1e-6
+"""Two equilibria whose places differ by less, in parts of the size, are one: marginal ones are
+found to the cube root of rounding, 1e-5 of their curvature's reach."""
+
+WINDOW_PLACES: Final = 48
+"""Values of the coordinate of a window, evenly spread, at which all assemblies are looked for: a
+circuit of the mechanism that lies between two of them is missed."""
+
+WINDOW_SAMPLES: Final = 16
+"""Places of a branch between two values of the window, at which forces are taken: two equilibria
+nearer to each other than that are seen where the force comes near to zero between them."""
+
+WINDOW_STARTS: Final = 64
+"""Starts of a search in a window of several freedoms, at least."""
+
+MOST_WINDOW_STARTS: Final = 2048
+"""Starts of a search in a window of several freedoms, at most."""
+
+MOST_SETTLING_STEPS: Final = 30
+"""Steps down to a stable place before Newton's: half a turn takes six."""
+
+SETTLING_STIFFNESS: Final = 1e-3
+"""Least stiffness, in parts of the largest, by which steps down are taken."""
+
+SETTLED_STEP: Final = 1e-3
+"""Steps down end below this, rad or length units: Newton's are faster from there."""
+
+TOUCHING: Final = 0.2
+"""A force that comes down to this part of a sample's, by a parabola through three, may touch zero
+between them: a search tells."""
+
+MOST_HALVINGS: Final = 50
+"""Halvings of a stretch on which the force changes its sign: to rounding."""
+
+SMOOTH_STEP: Final = 0.5
+"""From one part of a step to the next, states may change their pace by this part of it: steps of
+half a radian bend by less, and a jump to another branch is a change by its whole length."""
+
+DEAD_COORDINATE: Final = 1e6
+"""Where a named coordinate moves by less than one part in this of the mechanism's motion, it stands
+at a dead centre, and there is no stiffness by it."""
+
+# Sweeps at rest.
+
+MOST_REST_ROWS: Final = 256
+"""Rows of a sweep at rest that are corrected at once."""
+
+MOST_CHORDS: Final = 12
+"""Corrections of predicted equilibria with one stiffness: three or four are enough."""
+
+FEW_CHORDS: Final = 4
+"""So few corrections tell that the next stretch may be longer."""
+
+MANY_CHORDS: Final = 6
+"""More corrections tell that the next stretch should be shorter."""
+
+CHORD_GAIN: Final = 0.5
+"""Each correction has to be smaller than the one before by this, or it was predicted too far."""
+
+REST_ROUNDING: Final = 1e-9
+"""Corrections that stay below this, rad or length units, are rounding of weak forces."""
+
+REST_MISS: Final = 0.3
+"""How far from the row before the next one may be, rad or length units, before any rate of the
+branch is known."""
+
+REST_SMALL: Final = 1e-3
+"""Corrections below this, rad or length units, are no jump to another branch."""
+
+LEAST_REST_WAY: Final = 1e-3
+"""A way of the inputs from row to row is counted as at least this long beside the coordinates at
+rest, as where time alone goes on."""
+
+MOST_ARCS: Final = 400
+"""Steps by arclength from one row to the next: a bend takes a dozen."""
+
+LEAST_ARC: Final = 1e-9
+"""Shortest step by arclength: below, branches that meet are not told apart."""
+
+NEAR_FOLD: Final = 1e-3
+"""Where the inputs move by less than this part of the branch's length, it turns back there."""
+
+FOLD_STEP: Final = 1e-7
+"""Arclength within which a fold is located: its inputs are then right to the square of that."""
+
+ARC_COSINE: Final = 0.9
+"""Least cosine between the directions of a branch a step apart."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis import Analysis, Solvable, a_packing, response_name
+from mechkin_cli.analysis import Analysis, Solvable, a_packing, run_name
 from mechkin_cli.arguments import a_text
 from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
@@ -31,6 +31,7 @@ from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.response import integrated, prepare, read
 from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
+from mechkin_cli.statics import balanced
 from mechkin_cli.sweep import has_turns, is_slack, limited, slack_quantities
 from mechkin_cli.tolerances import MOST_KEPT
 from mechkin_cli.variants.design import Base, VariedDesign, base_of
@@ -55,7 +56,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.response import Prepared, ResponseResult
+    from mechkin_cli.response import FreeResult, Prepared
     from mechkin_cli.session import Session
 
 
@@ -432,7 +433,12 @@ class _ResponseRun:
             models: dict[int, tuple[Solvable, Prepared]] = {}
             for number in range(begin, min(begin + CHUNK, count)):
                 self._prepare(number, values[:, number], models)
-            results = integrated([one for _, one in models.values()], self.packing)
+            prepared = [one for _, one in models.values()]
+            results: Sequence[FreeResult] = [
+                balanced(one) for one in prepared if one.response.search
+            ]
+            if not results:
+                results = integrated(prepared, self.packing)
             for number, result in zip(models, results, strict=True):
                 self._take(number, models[number][0], result, found, count)
         for text in self.asked:
@@ -455,7 +461,7 @@ class _ResponseRun:
         self,
         number: int,
         model: Solvable,
-        result: ResponseResult,
+        result: FreeResult,
         found: dict[str, Floats],
         count: int,
     ) -> None:
@@ -486,7 +492,13 @@ def vary(
     set again."""
     packing = a_packing(lanes, threads)
     if a_text("run", run, f'"{SWEEP}"') != SWEEP:
-        name = response_name(model.problem, run)
+        name = run_name((SWEEP, *model.problem.responses), run)
+        search = model.problem.responses[name].search
+        if search is not None and search.window:
+            raise UsageError(
+                f"{name} finds any number of equilibria in a window; vary one: near: instead of "
+                f'window:, or one by one: with_parameters({{...}}).equilibrium("{name}")'
+            )
         return _vary_response(model, parameters, quantities, reduce, name, packing)
     if SWEEP not in model.runs:
         raise UsageError(
@@ -495,6 +507,11 @@ def vary(
         )
     base = base_of(model.design)
     problem = base.design.problem
+    if problem.motion.rest is not None:
+        raise UsageError(
+            f"the sweep of {model.name} has coordinates at rest (motion: rest:), which are found "
+            "row by row; vary it one by one: with_parameters({...}).analyze()"
+        )
     varied, names, values = varied_parameters(problem, parameters, model.design.values)
     asked = _expressions_once(base, quantities)
     call = _SweepRun(model, names, asked, reductions_of(asked, reduce), packing)

@@ -10,7 +10,8 @@ A place is held by constant efforts: of a sweep by those of its drives, which ac
 else by such along the named coordinates; at an equilibrium they are zero. At rest, with efforts e
 along coordinates h that are such functions of u,
 
-    K = N^-T (dr/du - sum of e_i d^2 h_i / du^2) N^-1, C = N^-T dr/du' N^-1, M = N^-T dr/du'' N^-1,
+    K = N^-T (dr/du - sum of e_i d^2 h_i / du^2) N^-1,
+    C = N^-T dr/du' N^-1,   M = N^-T dr/du'' N^-1,
 
 where the second derivatives are accelerations at constant rates u'. About places that drives move,
 the named coordinates rest, and N, P and the accelerations are followed beside the place.
@@ -24,7 +25,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import Quantity, Vector
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, is_angle
@@ -97,12 +97,6 @@ class SmallMotions:
             rates = self._rates(here, driven, self._readout(holding, 1))[0]
             efforts = solved(turned(rates)[0], left)[:, 0]
         self._held = holding, efforts
-
-    @property
-    def is_balanced(self) -> bool:
-        """Whether what holds the place is rounding beside its stiffness."""
-        largest = float(np.abs(self.matrices[0]).max(initial=0.0))
-        return float(np.abs(self.efforts).max(initial=0.0)) <= tolerances.SMALL_IMBALANCE * largest
 
     def with_forces(self, forces: Forces) -> SmallMotions:
         """The same motions, read with other loads."""

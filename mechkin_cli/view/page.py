@@ -317,8 +317,8 @@ class ShownModel(Protocol):
         """Runs the sweep in a mode."""
         ...
 
-    def respond(self, name: str, *, tables: Sequence[str], mode: str) -> ShownAnalysis:
-        """Runs a response in a mode."""
+    def run_free(self, name: str, *, tables: Sequence[str], mode: str) -> ShownAnalysis:
+        """Runs a response, or finds equilibria, in a mode."""
         ...
 
 

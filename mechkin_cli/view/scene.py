@@ -460,7 +460,8 @@ def _shown(analysis: ShownAnalysis, modes: bool, notes: list[Diagnostic]) -> Sho
     model, run = analysis.model, analysis.run
     forces = _may_read_forces(analysis, notes)
     own = analysis.result.letter if modes else analysis.result.mode
-    others = list(_other_modes(analysis, own, notes)) if modes else []
+    # the equilibria of a window are of any mode
+    others = list(_other_modes(analysis, own, notes)) if modes and own else []
     branches = {_OWN_NAMES.get(own, f"mode {own}"): analysis}
     branches |= {f"mode {letter}": one for letter, one in others}
     title = f"sweep of {model.name}" if run == SWEEP else f"response {run}"
@@ -507,7 +508,7 @@ def _other_modes(
             if run == SWEEP:
                 yield letter, model.analyze(tables=tables, mode=letter)
             else:
-                yield letter, model.respond(run, tables=tables, mode=letter)
+                yield letter, model.run_free(run, tables=tables, mode=letter)
         except UsageError as error:
             text = f"{run}: mode {letter} is not shown: {error}"
             notes.append(Diagnostic("view-modes-left-out", "note", text))

@@ -1,0 +1,206 @@
+"""Places of a mechanism and the forces that would have to hold it there.
+
+A place is given by all inputs of a session: the coordinates that nothing drives, and the driven
+ones. Forces are those of inverse dynamics at rest along the coordinates that nothing drives: zero
+where the loads balance, and the slope of the potential energy where the loads have one. One kernel
+call takes many places, in lanes.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import ZERO, effort_quantity
+from mechkin_cli.memo import remembered
+from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.session import Ask, RowInputs, turn_of
+from mechkin_cli.statics.forces import combined
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mechkin_cli.plan import Readout
+    from mechkin_cli.session import Ending, Session
+    from mechkin_cli.show import Bools, Floats
+
+
+class Place(NamedTuple):
+    """Inputs (inputs,) with their whole turns, states (states,) and turns (turn slots,) of one
+    closed place, in kernel units."""
+
+    inputs: Floats
+    state: Floats
+    turns: Floats
+
+
+class Forced(NamedTuple):
+    """Forces (free, places) in N*m by the kernel's unit of each coordinate, states (states, places)
+    and which places closed and have forces."""
+
+    forces: Floats
+    states: Floats
+    good: Bools
+
+
+class Way(NamedTuple):
+    """Places along a way, as far as the branch could be followed: states (states, reached) and
+    turns (turn slots, reached); the dead centre or branch point that it ends at, if it is known."""
+
+    states: Floats
+    turns: Floats
+    ending: Ending | None = None
+
+    @property
+    def reached(self) -> int:
+        """How many there are."""
+        return int(self.states.shape[1])
+
+
+class Statics:
+    """The forces about places of a session.
+
+    Args:
+        session: whose first inputs, or those numbered `free`, nothing drives.
+        free: their numbers.
+    """
+
+    def __init__(self, session: Session, free: Sequence[int]) -> None:
+        self.session, self.free = session, list(free)
+        problem = session.problem
+        inputs = problem.motion.inputs
+        self.units = np.array(
+            [
+                session.layout.mechanism.joints[inputs[k].joint].unit_of(
+                    inputs[k].coordinate, session.layout.length
+                )
+                for k in self.free
+            ]
+        )
+        self.cyclic = np.array(
+            [turn_of(problem, item) is not None for item in inputs]
+            + [False] * (len(session.driven) - len(inputs))
+        )
+
+    @property
+    def count(self) -> int:
+        """Number of coordinates that nothing drives."""
+        return len(self.free)
+
+    @property
+    def readout(self) -> Readout:
+        """Efforts at the coordinates that nothing drives."""
+        return _readout(self.session, tuple(self.free))
+
+    def reduced(self, inputs: Floats) -> tuple[Floats, Floats]:
+        """Inputs (inputs, places) without whole turns, and these."""
+        whole = np.where(self.cyclic[:, None], np.rint(inputs / (2.0 * pi)), 0.0)
+        return inputs - whole * (2.0 * pi), whole
+
+    def rows(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> RowInputs:
+        """What a run is given for places at rest."""
+        reduced, whole = self.reduced(inputs)
+        still = np.zeros_like(inputs)
+        tied = self.session.constraint_rates
+        if tied is not None:
+            tied = np.repeat(tied[:, :1], inputs.shape[1], axis=1)
+        return RowInputs(
+            reduced, states, still, still, still, tied, turns, whole, inputs, time, None
+        )
+
+    def forces(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Forced:
+        """Forces at places (inputs, places) closed from guesses (states, places)."""
+        readout = self.readout
+        demand = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
+        batch = self.session.run(self.rows(inputs, states, turns, time), Ask(demand, readout))
+        assert batch.outputs is not None
+        forces = np.stack([batch.outputs[readout.slots[q.name].start] for q in readout.wanted])
+        forces = forces * self.units[:, None]
+        good = batch.good & np.isfinite(forces).all(axis=0)
+        if batch.undefined is not None:
+            good &= ~batch.undefined.astype(bool)
+        return Forced(forces, batch.states, good)
+
+    def largest_at(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Floats:
+        """The largest force of one load alone, or of all weights, at each of many places (places,):
+        what balances there, N*m by kernel units."""
+        most = np.zeros(inputs.shape[1])
+        for session in _alone(self.session):
+            found = Statics(session, self.free).forces(inputs, states, turns, time)
+            sizes = np.max(np.abs(found.forces), axis=0)
+            most = np.where(found.good, np.maximum(most, sizes), most)
+        return most
+
+    def tangents(
+        self, inputs: Floats, states: Floats, moved: Sequence[int] | None = None
+    ) -> Floats:
+        """Rates of the columns (numbers, columns, places) where one free coordinate, or input
+        `moved`, after the other has unit rate."""
+        places = inputs.shape[1]
+        numbers = self.free if moved is None else moved
+        repeated = np.tile(np.arange(places), len(numbers))
+        rates = np.zeros((inputs.shape[0], repeated.size))
+        for number, k in enumerate(numbers):
+            rates[k, number * places : (number + 1) * places] = 1.0
+        reduced, _ = self.reduced(inputs)
+        rows = RowInputs(reduced[:, repeated], states[:, repeated], rates)
+        batch = self.session.run(rows, Ask(Demand.VELOCITY, derivatives=True, iterations=0))
+        assert batch.first is not None
+        return batch.first.reshape(-1, len(numbers), places).transpose(1, 0, 2)
+
+    def beside(self, place: Place, steps: Floats, time: Floats) -> Forced:
+        """Forces (free, steps) where all inputs are `steps` (inputs, steps) away, at times."""
+        moved = np.flatnonzero(steps.any(axis=1)).tolist()
+        inputs = place.inputs[:, None] + steps
+        states = np.repeat(place.state[:, None], steps.shape[1], axis=1)
+        if moved:
+            tangents = self.tangents(place.inputs[:, None], place.state[:, None], moved)[:, :, 0]
+            states = self.session.moved_along(states, combined(tangents, steps[moved]))
+        turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
+        return self.forces(inputs, states, turns, time)
+
+    def place(self, inputs: Floats, state: Floats) -> Place:
+        """A closed place at some inputs, to which nothing was followed."""
+        reduced, whole = self.reduced(np.stack([inputs, inputs], axis=1))
+        found = self.session.follow(reduced, state, turns=True, whole=whole)
+        assert found.turns is not None
+        return Place(inputs, state, found.turns[:, 0])
+
+    def way(self, inputs: Floats, place: Place) -> Way:
+        """The places along straight ways between `inputs` (inputs, places), the first of which is
+        that of `place`, as far as the branch leads."""
+        reduced, whole = self.reduced(inputs)
+        found = self.session.follow(reduced, place.state, turns=True, turn=place.turns, whole=whole)
+        assert found.turns is not None
+        count = found.reached
+        return Way(found.guess[:, :count], found.turns[:, :count], found.ending)
+
+
+@remembered
+def _readout(session: Session, free: tuple[int, ...]) -> Readout:
+    inputs = session.problem.motion.inputs
+    return session.readout([effort_quantity(inputs[k].joint, inputs[k].coordinate) for k in free])
+
+
+@remembered
+def _alone(session: Session) -> tuple[Session, ...]:
+    """Sessions in which one load acts alone, or all weights."""
+    problem = session.problem
+    mechanism = problem.mechanism
+    acting = [
+        replace(mechanism, loads=(load,), gravity=ZERO, frictions=()) for load in mechanism.loads
+    ]
+    if mechanism.gravity != ZERO:
+        acting.append(replace(mechanism, loads=(), frictions=()))
+    return tuple(session.loaded(replace(problem, mechanism=each)) for each in acting)
+
+
+def eigen(matrix: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues, rising, and vectors as columns of a symmetric matrix of finite numbers."""
+    found = _kernel.symmetric_eigen(np.ascontiguousarray(matrix), np.eye(len(matrix)))
+    assert found is not None
+    return found

@@ -1,0 +1,142 @@
+"""What an equilibrium is: stable, unstable, marginal or indifferent, by its stiffness; its lowest
+natural frequency.
+
+The stiffness is a tensor there, since the forces vanish: its signs do not depend on the coordinates
+that are named. Loads that have no potential leave it unsymmetric; then the real parts of its
+eigenvalues decide, and only that the equilibrium does not creep away is told.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import pi, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import eliminated
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.statics.forces import FreePlace, summed
+from mechkin_cli.statics.newton import Balancing, Search, search
+from mechkin_cli.statics.places import eigen
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+
+
+class Stability(Enum):
+    """Whether an equilibrium comes back after a small push."""
+
+    STABLE = "stable"
+    UNSTABLE = "unstable"
+    MARGINAL = "marginal"
+    INDIFFERENT = "indifferent"
+    UNKNOWN = "not known"
+
+
+class Verdict(NamedTuple):
+    """Of one equilibrium: its stability, the independent coordinates (freedoms,) there in kernel
+    units, the least stiffness by them (N*m by kernel units; nan where they do not move one by one)
+    and the coordinate that has most of its motion, the lowest natural frequency (1/s; nan where it
+    is not stable, or nothing has a mass), the largest force or stiffness of one load (kernel
+    units), and whether the stiffness is unsymmetric."""
+
+    stability: Stability
+    coordinates: Floats
+    least: float
+    along: int
+    frequency: float
+    size: float = 0.0
+    unsymmetric: bool = False
+
+
+def judged(balancing: Balancing, found: Search) -> Verdict:
+    """The verdict on an equilibrium that was found."""
+    forces, place = balancing.forces, found.place
+    coordinates, rates = balancing.named(place)
+    derivative = forces.stiffness(place)
+    matrix, nothing = derivative.matrix, np.nan
+    if not np.isfinite(matrix).all():
+        return Verdict(Stability.UNKNOWN, coordinates, nothing, 0, nothing)
+    size = max(float(np.max(np.abs(matrix))), found.largest, balancing.largest(place))
+    error = derivative.error + tolerances.MARGINAL_STIFFNESS * size
+    off = float(np.max(np.abs(matrix - matrix.T)))
+    unsymmetric = off > tolerances.UNSYMMETRIC_STIFFNESS * size
+    symmetric = 0.5 * (matrix + matrix.T)
+    values, vectors = eigen(symmetric)
+    least, direction = float(values[0]), vectors[:, 0]
+    if unsymmetric:
+        # above the least real part of the eigenvalues nothing creeps away
+        creeping = _kernel.eigen(np.ascontiguousarray(matrix))
+        assert creeping is not None
+        least = float(np.min(creeping[0]))
+    stability = Stability.MARGINAL
+    if least > error:
+        stability = Stability.STABLE
+    elif least < -error:
+        stability = Stability.UNSTABLE
+    elif _is_indifferent(balancing, place, direction):
+        stability = Stability.INDIFFERENT
+    frequency = nothing
+    if stability is Stability.STABLE and not unsymmetric:
+        frequency = _lowest_frequency(symmetric, forces.inertia(place))
+    along = int(np.argmax(np.abs(summed(rates.T * direction[:, None]))))
+    named = _in_coordinates(symmetric, rates)
+    length = forces.session.layout.length
+    by_coordinates = nothing if named is None else length * length * float(eigen(named)[0][0])
+    return Verdict(stability, coordinates, by_coordinates, along, frequency, size, unsymmetric)
+
+
+def _in_coordinates(matrix: Floats, rates: Floats) -> Floats | None:
+    """A stiffness by coordinates whose rates (coordinates, freedoms) along the chart are known:
+    N^-T K N^-1; None at a dead centre of one."""
+    count = rates.shape[0]
+    columns = []
+    for k in range(count):
+        unit = [float(k == i) for i in range(count)]
+        solved = eliminated(rates.tolist(), unit, tolerances.RANK_ZERO)
+        if solved is None or not max(map(abs, solved)) < tolerances.DEAD_COORDINATE:
+            return None
+        columns.append(np.array(solved))
+    product = np.array(
+        [[float(summed(a * summed(matrix.T * b[:, None]))) for b in columns] for a in columns]
+    )
+    symmetric: Floats = 0.5 * (product + product.T)
+    return symmetric
+
+
+def _is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -> bool:
+    """Whether loads balance along a motion without stiffness, to both sides."""
+    forces = balancing.forces
+    reach = tolerances.INDIFFERENT_REACH * np.array([-1.0, -0.5, 0.5, 1.0])
+    beside = forces.at(place, direction[:, None] * reach)
+    for number in range(reach.size):
+        if not beside.good[number]:
+            return False
+        again = search(balancing, forces.moved(place, beside, number))
+        if not again.found:
+            return False
+        moved = again.place.state - place.state
+        wanted = beside.states[:, number] - place.state
+        if np.max(np.abs(moved - wanted)) > 0.5 * np.max(np.abs(wanted)):
+            return False
+    return True
+
+
+def _lowest_frequency(matrix: Floats, masses: Floats) -> float:
+    """The lowest natural frequency (1/s) of a stable place; nan where nothing has a mass.
+
+    The largest eigenvalue of K^-1 M is 1/omega^2: massless motions have none.
+    """
+    values, vectors = eigen(matrix)
+    scaled = vectors / np.sqrt(values)
+    inner = np.array(
+        [[float(summed(a * summed(masses.T * b[:, None]))) for b in scaled.T] for a in scaled.T]
+    )
+    most = float(eigen(0.5 * (inner + inner.T))[0][-1])
+    heaviest = float(np.max(np.abs(masses)))
+    if not most > tolerances.EQUILIBRIUM_BALANCE * heaviest / values[-1] or not heaviest > 0.0:
+        return np.nan
+    return 1.0 / (2.0 * pi * sqrt(most))

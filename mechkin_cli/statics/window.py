@@ -1,0 +1,419 @@
+"""All equilibria in a window.
+
+Of one freedom: between values of its coordinate, evenly spread over the window, every branch of
+every assembly is followed to the next value or to the dead centre before it, and the force is taken
+at places along it. Equilibria are where it changes its sign, where it only touches zero, and where
+it does so across a dead centre. What closes between two values without coming to either is missed.
+
+Of several freedoms: searches start at places spread over the window, in every assembly there, by
+Newton's steps and, in turns, down to a stable place. How likely one more start finds another is
+told, as for assembly modes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel import functions
+from mechkin_cli.mechanism import Limit
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
+from mechkin_cli.search import all_assemblies, pose_number
+from mechkin_cli.session import input_number, input_text, input_unit, turn_of
+from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search, settle
+from mechkin_cli.statics.places import Place, Statics
+from mechkin_cli.statics.result import EquilibriumResult
+from mechkin_cli.statics.stability import judged
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism import ResponseProblem
+    from mechkin_cli.response import Prepared
+    from mechkin_cli.session import Ending
+    from mechkin_cli.show import Bools, Floats
+
+
+def in_window(one: Prepared) -> EquilibriumResult:
+    """All equilibria of an entry of the file with a window; its middle need not be assembled."""
+    response, session = one.response, one.chosen
+    start = replace(one.start, diagnostics=[])
+    balancing = Balancing.of(session, response.independent)
+    statics = Statics(session, range(len(response.independent)))
+    assert response.search is not None
+    known = Known(balancing, response.search.window)
+    if statics.count == 1:
+        curve = _Curve(balancing, statics, known)
+        curve.look()
+        notes = curve.notes(response)
+    else:
+        notes = _from_starts(response, balancing, statics, known)
+    judgements = [(found, judged(balancing, found)) for found in known.found]
+    judgements.sort(key=lambda pair: pair[1].coordinates.tolist())
+    if not judgements:
+        notes = [*notes, _none(response)]
+    return EquilibriumResult(response, balancing, start, judgements, notes)
+
+
+@dataclass
+class Known:
+    """The equilibria that are known, each once, within a window."""
+
+    balancing: Balancing
+    window: tuple[Limit, ...]
+    found: list[Search] = field(default_factory=list)
+
+    @property
+    def ends(self) -> tuple[Floats, Floats]:
+        """Least and largest values (free,) of the window, in kernel units."""
+        session = self.balancing.chosen
+        inputs = session.problem.motion.inputs[: len(self.window)]
+        units = np.array([input_unit(session.layout, item) for item in inputs])
+        low = np.array([one.low for one in self.window]) / units
+        return low, np.array([one.high for one in self.window]) / units
+
+    def add(self, one: Search) -> bool:
+        """Takes an equilibrium, if it lies in the window and is not known; whether it is new."""
+        inside = self._within(one)
+        if inside is None:
+            return False
+        states = [other.place.state for other in self.found]
+        if states:
+            layout, limit = self.balancing.chosen.layout, tolerances.SAME_EQUILIBRIUM
+            if pose_number(layout, np.stack(states, axis=1), one.place.state, limit) is not None:
+                return False
+        self.found.append(inside)
+        return True
+
+    def _within(self, one: Search) -> Search | None:
+        """An equilibrium with its angles turned into the window; None outside."""
+        session, (low, high) = self.balancing.chosen, self.ends
+        values, _ = self.balancing.named(one.place)
+        slack = tolerances.SAME_EQUILIBRIUM
+        inputs = session.problem.motion.inputs[: values.size]
+        cyclic = np.array([turn_of(session.problem, item) is not None for item in inputs])
+        turns = np.where(cyclic, np.ceil((low - slack - values) / (2.0 * np.pi)), 0.0)
+        at = values + 2.0 * np.pi * turns
+        if not ((at >= low - slack) & (at <= high + slack)).all():
+            return None
+        if not turns.any():
+            return one
+        state, slots = one.place.state.copy(), one.place.turns.copy()
+        known = session.problem.quantities()
+        for item, (edge, freedom), turn in zip(inputs, session.graph.inputs, turns, strict=False):
+            if session.layout.joint_reference[item.joint] >= 0:
+                state[session.layout.state(edge, freedom)] += 2.0 * np.pi * turn
+            elif (slot := session.structure.turn_slot(known[item.name])) is not None:
+                slots[slot] += 2.0 * np.pi * turn
+        return one._replace(place=one.place._replace(state=state, turns=slots))
+
+
+class _Stretch(NamedTuple):
+    """A branch within a cell of the window: values (samples,), states, turns and forces there, the
+    largest force of one load, and the dead centre at its end."""
+
+    values: Floats
+    states: Floats
+    turns: Floats
+    forces: Floats
+    largest: Floats
+    ending: Ending | None
+    is_whole: bool
+
+
+class _Curve:
+    """The configurations of one freedom in a window."""
+
+    def __init__(self, balancing: Balancing, statics: Statics, known: Known) -> None:
+        self.balancing, self.statics, self.known = balancing, statics, known
+        self.time = balancing.forces.driven.time
+        (low,), (high,) = known.ends
+        self.values = np.linspace(low, high, tolerances.WINDOW_PLACES + 1)
+        self.base = statics.session.inputs.values[:, 0]
+        self.lost: list[float] = []
+        self.at_dead_centres: list[float] = []
+        self.indifferent: list[tuple[Floats, Floats]] = []
+        self.incomplete = 0.0
+        self.largest = 0.0
+
+    def look(self) -> None:
+        """Looks at all cells of the window."""
+        before = self._assemblies(self.values[0])
+        for low, high in zip(self.values[:-1], self.values[1:], strict=True):
+            after = self._assemblies(high)
+            ways = [self._stretch(low, high, place) for place in before]
+            ways += [
+                one
+                for one in (self._stretch(high, low, place) for place in after)
+                if not one.is_whole
+            ]
+            for one in ways:
+                self._look_along(one)
+            self._look_across([one for one in ways if not one.is_whole])
+            before = after
+
+    def _inputs(self, values: Floats) -> Floats:
+        inputs = np.repeat(self.base[:, None], values.size, axis=1)
+        inputs[self.statics.free] = values
+        return inputs
+
+    def _assemblies(self, value: float) -> list[Place]:
+        inputs = self._inputs(np.array([value]))
+        reduced, _ = self.statics.reduced(inputs)
+        found = all_assemblies(self.statics.session, reduced[:, 0])
+        if not found.complete:
+            self.incomplete = max(self.incomplete, found.chance)
+        return [self.statics.place(inputs[:, 0], state) for state in found.states.T]
+
+    def _stretch(self, first: float, last: float, place: Place) -> _Stretch:
+        """The branch through a place at the first value, to the last or to its end before it."""
+        count = tolerances.WINDOW_SAMPLES
+        # one sample more shows what the force does at the end
+        values = first + (last - first) * (np.arange(count + 2) / count)
+        way = self.statics.way(self._inputs(values), place)
+        reached, states, turns = way.reached, way.states, way.turns
+        is_whole = reached > count
+        values = values[:reached]
+        ending = None if is_whole else way.ending
+        if ending is not None and ending.is_dead_centre and reached:
+            fold = float(ending.inputs[self.statics.free[0]])
+            gap = fold - values[-1]
+            near = values[-1] + gap * np.array([0.0, 0.5, 0.75, 0.9, 0.97, 0.99])
+            last_place = Place(self._inputs(values[-1:])[:, 0], states[:, -1], turns[:, -1])
+            more = self.statics.way(self._inputs(near), last_place)
+            values = np.concatenate([values, near[1 : more.reached]])
+            states = np.concatenate([states, more.states[:, 1:]], axis=1)
+            turns = np.concatenate([turns, more.turns[:, 1:]], axis=1)
+        elif not is_whole:
+            self.lost.append(float(values[-1]) if reached else first)
+        times = np.full(values.size, self.time)
+        inputs = self._inputs(values)
+        found = self.statics.forces(inputs, states, turns, times)
+        forces = np.where(found.good, found.forces[0], np.nan)
+        largest = self.statics.largest_at(inputs, states, turns, times)
+        self.largest = max(self.largest, float(largest.max(initial=0.0)))
+        return _Stretch(values, found.states, turns, forces, largest, ending, is_whole)
+
+    def _place(self, one: _Stretch, k: int) -> Place:
+        inputs = self._inputs(one.values[k : k + 1])[:, 0]
+        return Place(inputs, one.states[:, k], one.turns[:, k])
+
+    def _look_along(self, one: _Stretch) -> None:
+        """Zeros of the force along a stretch."""
+        forces, values = one.forces, one.values
+        zero = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * self.largest
+        if self._is_indifferent(one, zero):
+            return
+        for k in range(forces.size - 1):
+            if zero[k]:
+                self._search(self._place(one, k), values[max(k - 1, 0)], values[k + 1])
+            elif forces[k] * forces[k + 1] < 0.0 and not zero[k + 1]:
+                self._between(one, k)
+        if forces.size and zero[-1]:
+            self._search(self._place(one, forces.size - 1), values[-2:][0], values[-1])
+        for k in range(1, forces.size - 1):
+            a, b, c = forces[k - 1 : k + 2]
+            if a * b <= 0.0 or b * c <= 0.0 or abs(b) > min(abs(a), abs(c)):
+                continue
+            # the least of a parabola through three samples: near zero, or beyond it
+            bend, slope = a - 2.0 * b + c, 0.5 * (c - a)
+            least = b - 0.5 * slope * slope / bend if bend != 0.0 else b
+            if least * b <= abs(b) * tolerances.TOUCHING * abs(b):
+                self._search(self._place(one, k), values[k - 1], values[k + 1])
+
+    def _is_indifferent(self, one: _Stretch, zero: Bools) -> bool:
+        """Whether the loads balance all along the stretch, or a part of it; then the first place of
+        it is taken."""
+        both = zero[:-1] & zero[1:]
+        if not both.any():
+            return False
+        k = int(np.argmax(both))
+        last = k + int(np.argmin(np.append(zero[k:], False)))
+        part = slice(k, last)
+        known = any(
+            pose_number(self.statics.session.layout, states, one.states[:, k]) is not None
+            for _, states in self.indifferent
+        )
+        self.indifferent.append((one.values[part], one.states[:, part]))
+        found = None if known else self._found(self._place(one, k))
+        if found is not None:
+            self.known.add(found)
+        return bool(zero.all())
+
+    def _between(self, one: _Stretch, k: int) -> None:
+        """The zero between two samples: by Newton from the secant, else by halving."""
+        place, low, high = self._place(one, k), one.values[k], one.values[k + 1]
+        at, below = float(low), float(one.forces[k])
+        end, above = float(high), float(one.forces[k + 1])
+        for _ in range(tolerances.MOST_HALVINGS):
+            middle = at + (end - at) * (below / (below - above))
+            middle = min(max(middle, min(at, end)), max(at, end))
+            way = self.statics.way(
+                self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place
+            )
+            if way.reached < 2:
+                return
+            there = Place(self._inputs(np.array([middle]))[:, 0], way.states[:, 1], way.turns[:, 1])
+            if self._search(there, low, high):
+                return
+            # not there: halve instead
+            middle = 0.5 * (at + end)
+            way = self.statics.way(
+                self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place
+            )
+            if way.reached < 2:
+                return
+            inputs = self._inputs(np.array([middle]))
+            force = self.statics.forces(
+                inputs, way.states[:, 1:], way.turns[:, 1:], np.array([self.time])
+            )
+            if not force.good.all():
+                return
+            size = float(force.forces[0, 0])
+            if size * below > 0.0:
+                at, below = middle, size
+                place = Place(inputs[:, 0], way.states[:, 1], way.turns[:, 1])
+            else:
+                end, above = middle, size
+
+    def _found(self, place: Place) -> Search | None:
+        """The equilibrium that a search from a place finds; None without one."""
+        try:
+            found = search(self.balancing, self.balancing.charted(self.statics, place))
+        except ValueError:
+            return None
+        return found if found.found else None
+
+    def _search(self, place: Place, low: float, high: float) -> bool:
+        """Takes the equilibrium that a search from a place finds between two values."""
+        found = self._found(place)
+        if found is None:
+            return False
+        low, high = min(low, high), max(low, high)
+        slack = tolerances.SAME_EQUILIBRIUM
+        at = float(self.balancing.named(found.place)[0][0])
+        if not low - slack <= at <= high + slack:
+            return False
+        self.known.add(found)
+        return True
+
+    def _look_across(self, ends: list[_Stretch]) -> None:
+        """Zeros of the force between two stretches that meet at a dead centre: there its part along
+        the coordinate has a sign on each side, and the same one where it has a zero between."""
+        folds = [one for one in ends if one.ending is not None and one.ending.is_dead_centre]
+        layout = self.statics.session.layout
+        for number, one in enumerate(folds):
+            assert one.ending is not None
+            for other in folds[number + 1 :]:
+                assert other.ending is not None
+                state = one.ending.state
+                meets = pose_number(
+                    layout, other.ending.state[:, None], state, tolerances.SAME_DEAD_CENTRE
+                )
+                if meets is None or not one.forces.size or not other.forces.size:
+                    continue
+                if not one.forces[-1] * other.forces[-1] > 0.0:
+                    continue
+                fold = float(one.ending.inputs[self.statics.free[0]])
+                found = [
+                    self._search(self._place(each, each.values.size - 1), each.values[-2:][0], fold)
+                    for each in (one, other)
+                ]
+                if not any(found):
+                    self.at_dead_centres.append(fold)
+
+    def notes(self, response: ResponseProblem) -> list[Diagnostic]:
+        """What was missed, or may have been."""
+        notes = []
+        session, number = self.statics.session, self.statics.free[0]
+
+        def words(value: float) -> str:
+            return input_text(input_number(session.problem, session.layout, number, value))
+
+        for value in self.at_dead_centres:
+            text = (
+                f"an equilibrium lies at a dead centre of the window's coordinate, {words(value)}"
+            )
+            hint = "name another coordinate in window:, which moves there"
+            notes.append(Diagnostic("at-dead-centre", "warning", text, response.place, hint=hint))
+        if self.indifferent:
+            low = min(float(values.min()) for values, _ in self.indifferent)
+            high = max(float(values.max()) for values, _ in self.indifferent)
+            text = f"the loads balance all along from {words(low)} to {words(high)}"
+            notes.append(Diagnostic("indifferent", "note", text, response.place))
+        if self.lost:
+            text = "a branch of the mechanism could not be followed through the window"
+            hint = "equilibria beyond may be missed: name another coordinate in window:"
+            at = f"first lost at {words(self.lost[0])}"
+            notes.append(
+                Diagnostic("window-branch", "warning", text, response.place, at, hint=hint)
+            )
+        if self.incomplete > 0.0:
+            text = (
+                "assemblies in the window were searched for from random starts, which may miss some"
+            )
+            at = f"a chance of at most {self.incomplete:.1g} that one more start finds another"
+            notes.append(Diagnostic("window-modes", "note", text, response.place, at))
+        return notes
+
+
+def _none(response: ResponseProblem) -> Diagnostic:
+    """That a window has no equilibrium."""
+    assert response.search is not None
+    names = " and ".join(one.name for one in response.search.window)
+    text = f"no place within the window of {names} was found at which the loads balance"
+    hint = "widen the window, or look at the forces of a sweep through it"
+    return Diagnostic("no-equilibrium", "error", text, response.place, hint=hint)
+
+
+def _from_starts(
+    response: ResponseProblem, balancing: Balancing, statics: Statics, known: Known
+) -> list[Diagnostic]:
+    """Searches from places spread over the window; how sure it is that they found all."""
+    assert response.search is not None
+    low, high = known.ends
+    base = statics.session.inputs.values[:, 0]
+    least = max(response.search.starts, tolerances.WINDOW_STARTS)
+    starts = ended = since = 0
+    while starts < tolerances.MOST_WINDOW_STARTS:
+        inputs = base.copy()
+        inputs[statics.free] = low + (high - low) * _spread(starts, statics.count)
+        reduced, _ = statics.reduced(inputs[:, None])
+        for state in all_assemblies(statics.session, reduced[:, 0], thorough=False).states.T:
+            try:
+                place = balancing.charted(statics, statics.place(inputs, state))
+            except ValueError:
+                continue
+            if starts % 2:
+                place = settle(balancing, place)
+            found = search(balancing, place)
+            if found.end is not SearchEnd.FOUND:
+                continue
+            ended += 1
+            since = 0 if known.add(found) else since + 1
+        starts += 1
+        if starts >= least and since >= ended // 2:
+            break
+    # as of assemblies: each of the known ones could have been the last that was missing
+    pairs = max(len(known.found) * (len(known.found) + 1), 1)
+    chance = min(1.0, float(functions.log(pairs / tolerances.SEARCH_DOUBT)) / max(since, 1))
+    count = len(known.found)
+    text = (
+        f"{count} equilibri{'um' if count == 1 else 'a'} found from {starts} starts; with "
+        f"{100.0 * (1.0 - tolerances.SEARCH_DOUBT):g} % confidence one more search that ends at "
+        f"one finds another with a chance of at most {chance:.1g}"
+    )
+    at = f"{ended} searches ended at an equilibrium, the last {since} of them at known ones"
+    hint = "ask for more starts: starts: 1000"
+    return [Diagnostic("window-starts", "note", text, response.place, at, hint=hint)]
+
+
+def _spread(number: int, count: int) -> Floats:
+    """A point of the unit cube (count,) that spreads evenly with its number: multiples of powers of
+    the root of x^(count+1) = x + 1 (M. Roberts, 2018), which is the golden ratio for one."""
+    root, powers = 2.0, [1.0]
+    for _ in range(64):  # by Newton
+        powers = np.multiply.accumulate([1.0, *[root] * (count + 1)]).tolist()
+        root -= (powers[-1] - root - 1.0) / ((count + 1) * powers[-2] - 1.0)
+    return np.array([(0.5 + (number + 1) / powers[k + 1]) % 1.0 for k in range(count)])
