@@ -537,6 +537,11 @@ class _ResponseBuilder:
                 text = f"{name} is driven, so the effort of its drive follows from the motion"
                 self.fields.key_error("effort-and-drive", place, text, "remove one of the two")
                 continue
+            if not self.joints[name.rpartition(".")[0]].carries:
+                text = f"{name} is a coordinate of no joint of the machine and carries no effort"
+                hint = "write a force or torque on the link under loads:, with runs: [...]"
+                self.fields.key_error("load-on-pose", place, text, hint)
+                continue
             efforts.append(self.loads.add_effort(place, name, value, run))
         return efforts
 

@@ -401,8 +401,8 @@ class Model(Listed):
         Example:
             >>> from mechkin_cli import load
             >>> m = load("mechanisms/vibration/engine_mounts.yaml")
-            >>> [round(float(f), 3) for f in m.vibration().frequencies]
-            [0.997]
+            >>> [round(float(f), 2) for f in m.vibration(row=2).frequencies]
+            [6.76, 9.23, 10.01, 10.06, 12.09, 13.71]
         """
         from mechkin_cli.model.vibrations import vibration
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+SMALL_IMBALANCE: Final = 1e-9
+"""Effort along a coordinate, in parts of the largest stiffness (per rad or m), below which a row is
+said to be in balance: equilibria are found to 1e-12 of the largest load."""
+
 SYMMETRIC_STIFFNESS: Final = 1e-9
 """Part of a matrix's largest entry, scaled to the inertia, by which it may be unsymmetric or damp
 and still count as symmetric, or as no damping: differences of forces leave up to 1e-11."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError
 from mechkin_cli.kernel.functions import atan2
 from mechkin_cli.mechanism import JointLoad, LinkLoad, is_angle
@@ -386,6 +386,24 @@ class Vibration(Listed):
         return found[0] / unit, found[1] / unit, found[2] / unit
 
     # How it is shown.
+
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What was left out, and what is held."""
+        found = []
+        if self._freed.friction:
+            text = "friction is left out of small motions: it does not go with small rates"
+            hint = "add dampers for what it takes"
+            found.append(Diagnostic("friction-left-out", "note", text, None, hint=hint))
+        if not self._freed.motions.is_balanced:
+            efforts = ", ".join(
+                f"{float(x):.4g} {'N*m' if unit == 'rad' else 'N'} at {name}"
+                for name, x, unit in zip(self.coordinates, self.holding, self.units, strict=True)
+            )
+            text = f"loads do not balance in this row: constant efforts hold it, {efforts}"
+            hint = "equilibria: finds where they balance"
+            found.append(Diagnostic("held-by-efforts", "note", text, None, hint=hint))
+        return tuple(found)
 
     @property
     def units(self) -> tuple[str, ...]:

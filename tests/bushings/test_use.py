@@ -232,3 +232,9 @@ def test_unstable_matrices_are_found_where_parameters_make_them() -> None:
     model = mk.loads(MOUNTED.replace("x: 2*k", "x: k - 50 N/mm"))
     with pytest.raises(InvalidFile, match="stiffness along x is negative"):
         model.with_parameters({"k": "40 N/mm"}).analyze()
+
+
+def test_no_effort_acts_at_a_pose() -> None:
+    text = RUBBER.replace("    time:", "    efforts: {pose.x: 3}\n    time:")
+    with pytest.raises(InvalidFile, match="carries no effort"):
+        mk.loads(text)
