@@ -23,7 +23,7 @@ __getattr__, __dir__ = lazy_names(
         "analysis": "Analysis Solvable",
         "certificate": "Certificate",
         "design": "Design",
-        "runs": "a_packing input_values respond response_name run_name run_sweep stream_sweep",
-        "stream": "Block PartRows Stream",
+        "runs": "a_packing input_values respond response_name run_name run_sweep stream_run",
+        "stream": "Block Ended PartRows Stream ended",
     },
 )

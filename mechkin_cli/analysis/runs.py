@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.building import Built
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.mechanism import AnyBalance
+    from mechkin_cli.mechanism import AnyBalance, ResponseProblem
     from mechkin_cli.tables import CoefficientsLayout
 
 QUANTITIES = (
@@ -303,7 +303,23 @@ def run_sweep(
     return analysis
 
 
-def stream_sweep(
+def stream_run(
+    model: Solvable,
+    run: str | None,
+    quantities: Iterable[str] | None,
+    rows: int,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Stream:
+    """A run of a model block by block; arguments and errors are those of `Model.stream`."""
+    if run is None or run == SWEEP:
+        return _stream_sweep(model, quantities, rows, tables, mode, lanes, threads)
+    return _stream_response(model, run, quantities, rows, tables, mode, lanes, threads)
+
+
+def _stream_sweep(
     model: Solvable,
     quantities: Iterable[str] | None,
     rows: int,
@@ -312,13 +328,33 @@ def stream_sweep(
     lanes: int,
     threads: int,
 ) -> Stream:
-    """The sweep of a model block by block; arguments and errors are those of `Model.stream`."""
     packing = a_packing(lanes, threads)
     rows = a_whole_number("rows", rows, "rows of a block", least=1)
     asked = _asked(model, quantities, tables, mode, None, packing, balanced=False)
     if mode is not None:
         refuse_unknown_mode(asked.sweep.start.diagnostics)
     return Stream(model, asked.layouts, asked.sweep, rows)
+
+
+def _stream_response(
+    model: Solvable,
+    name: str,
+    quantities: Iterable[str] | None,
+    rows: int,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Stream:
+    packing = a_packing(lanes, threads)
+    rows = a_whole_number("rows", rows, "rows of a block", least=1)
+    asked = _asked_response(model, name, quantities, tables, mode)
+    blocks = response_room.ResponseBlocks(
+        asked.problem, asked.response, asked.names, packing, asked.session
+    )
+    if mode is not None:
+        refuse_unknown_mode(blocks.start.diagnostics)
+    return Stream(model, asked.layouts, blocks, rows, asked.response.name)
 
 
 def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
@@ -339,18 +375,26 @@ def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
         raise UsageError(f"{why}; {cure}") from None
 
 
-def respond(
+class _AskedResponse(NamedTuple):
+    """A response that is asked for, with its tables and the quantities that they read beside those
+    named."""
+
+    problem: Problem
+    response: ResponseProblem
+    session: Session
+    layouts: tuple[TableLayout, ...]
+    names: tuple[str, ...]
+
+
+def _asked_response(
     model: Solvable,
     name: str | None,
     quantities: Iterable[str] | None,
-    *,
     tables: Sequence[str] | None,
     mode: str | None,
-    lanes: int,
-    threads: int,
-) -> Analysis:
-    """Runs a response of a model; arguments and errors are those of `Model.respond`."""
-    packing = a_packing(lanes, threads)
+) -> _AskedResponse:
+    """The response of a model as it is asked for; arguments and errors are those of
+    `Model.respond`."""
     design = model.design.at_responses
     problem = design.problem
     run = response_name(problem, name)
@@ -363,8 +407,26 @@ def respond(
         session = session.assembled(assembly)
     layouts = chosen_tables(design.built, tables, run)
     names = wanted_names(session, run, layouts, quantities)
-    result = response_room.respond(problem, response, names, packing, session)
-    analysis = Analysis(model, layouts, result, run, asked=tuple(names))
+    return _AskedResponse(problem, response, session, layouts, tuple(names))
+
+
+def respond(
+    model: Solvable,
+    name: str | None,
+    quantities: Iterable[str] | None,
+    *,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Analysis:
+    """Runs a response of a model; arguments and errors are those of `Model.respond`."""
+    packing = a_packing(lanes, threads)
+    asked = _asked_response(model, name, quantities, tables, mode)
+    result = response_room.respond(
+        asked.problem, asked.response, asked.names, packing, asked.session
+    )
+    analysis = Analysis(model, asked.layouts, result, asked.response.name, asked=asked.names)
     if mode is not None:
         refuse_unknown_mode(analysis.diagnostics)
     return analysis

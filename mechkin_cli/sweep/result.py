@@ -108,6 +108,7 @@ class Result:
         self.row_states = rows
         self.run_start = session, start
         self.events: tuple[str, ...] = ()
+        self.run_events: tuple[str, ...] = ()
         self.demand = Demand.POSITION
         self.residual = np.full(rows.reached.size, np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
