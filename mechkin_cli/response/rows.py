@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import DrivenInput, Moments, MotionInputs, Span, dimension_of
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.response.integration import ending
@@ -129,6 +130,23 @@ def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
     moved = before_jump(one.response, moved)
     end = run_end(one, moved.report, moved.count)
     return block_of(one, moved, end, Span(0, end.rows, end.rows))
+
+
+def refuse_many_rows(one: Prepared, variants: int = 1) -> None:
+    """Rows are held up to a limit.
+
+    Raises:
+        UsageError: these are too many.
+    """
+    plan, rows = one.free.plan, one.response.rows
+    per_row = plan.states + plan.charts * (plan.columns + 2)
+    if rows * per_row * variants > tolerances.MOST_NUMBERS:
+        most = tolerances.MOST_NUMBERS // (per_row * variants)
+        raise UsageError(
+            f"the response {one.response.name} has too many rows to be held at once, {rows} (limit "
+            f"{most}); take them block by block with stream(run=...), or write them with mechkin "
+            "analyze --format csv or parquet"
+        )
 
 
 class RunEnd(NamedTuple):

@@ -50,7 +50,7 @@ from mechkin_cli.response.resting import (
     with_contacts,
 )
 from mechkin_cli.response.result import ENERGIES, ResponseResult
-from mechkin_cli.response.rows import Prepared, rows_of
+from mechkin_cli.response.rows import Prepared, refuse_many_rows, rows_of
 from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
@@ -241,6 +241,7 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
     results: dict[int, ResponseResult] = {}
     groups: dict[object, list[int]] = {}
     for number, one in enumerate(variants):
+        refuse_many_rows(one)
         if one.begun is None:
             results[number] = _nothing(one)
         else:

@@ -182,6 +182,15 @@ def test_a_response_with_limits_is_held(monkeypatch: pytest.MonkeyPatch) -> None
     assert values.tobytes() == whole["O.theta"].tobytes()
 
 
+def test_too_many_rows_are_not_held(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = mk.loads(TEXTS["to the end"])
+    monkeypatch.setattr(tolerances, "MOST_NUMBERS", 100)
+    with pytest.raises(mk.UsageError, match=r"swing has too many rows .* 61 .*stream\(run"):
+        model.respond("swing")
+    small_blocks(monkeypatch, 10)
+    assert sum(block.rows for block in model.stream(run="swing")) == 61
+
+
 def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:
     monkeypatch.setattr("sys.argv", ["mechkin", "analyze", *words])
     with pytest.raises(SystemExit) as ended:

@@ -142,10 +142,11 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
   ResponseTask task;
   if (p.law.outputs - p.load_values != (int)stops.size()) throw nb::value_error("stops: one for each watched value");
   if ((driven ? driven->inputs() : 0) != p.inputs) throw nb::value_error("driven: one law for each input");
-  // a copy: another thread may change the array
-  const std::vector<double> moments(times.data(), times.data() + every);
+  // a copy: another thread may change the array; who takes blocks keeps it as it is, as there may be many moments
+  std::vector<double> moments;
+  if (taker.is_none()) moments.assign(times.data(), times.data() + every);
   task.moments = (long)every;
-  task.times = moments.data(), task.driven = driven, task.stops = stops_of(stops);
+  task.times = taker.is_none() ? moments.data() : times.data(), task.driven = driven, task.stops = stops_of(stops);
   task.limits = limits_of(tests, iterations, jump, radius, straight);
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
   task.settings.dense_rows = dense_rows, task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
