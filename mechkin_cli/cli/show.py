@@ -86,11 +86,17 @@ def shown_ends(first: Columns, last: Columns, rows: int, folder: Path) -> str:
 def shown_summary(name: str, title: str, summary: Summary) -> str:
     """What stands below a table of which no rows are shown."""
     below = summary_table(name, title, summary)
-    lines = [f"{below.name}: {_one_line(below.title)}", ""]
+    lines = [f"{below.name}: {_one_line(below.title)}"]
     width = shutil.get_terminal_size((80, 24)).columns
+    columns = [["summary", "", *summary.lines]]
+    for each in summary.columns:
+        unit = f"[{each.unit}]" if each.unit else ""
+        columns.append([_one_line(each.label), unit, *summary.texts(each)])
+    for group in _side_by_side(columns, width):
+        lines += ["", *group]
     notes = summary.written_notes(_one_line)
-    said = "\n".join(line for note in notes for line in wrap(f"({note})", width))
-    return "\n".join(lines) + shown_table(below, len(summary.lines)) + said + "\n\n"
+    lines += [line for note in notes for line in wrap(f"({note})", width)]
+    return "\n".join(lines) + "\n\n"
 
 
 def _shown(
@@ -130,6 +136,11 @@ def _grouped(
             cells.insert(HEAD_LINES + gap, "" if number else GAP_MARK)
     if table.summary is not None:
         columns = _with_summary(columns, table.summary)
+    yield from _side_by_side(columns, width)
+
+
+def _side_by_side(columns: list[list[str]], width: int) -> Iterator[list[str]]:
+    """The lines of columns of cells, those that fit side by side group by group."""
     padded = [[cell.rjust(max(map(len, cells))) for cell in cells] for cells in columns]
     for group in _groups(padded, width):
         yield [GAP.join(row).rstrip() for row in zip(*group, strict=True)]

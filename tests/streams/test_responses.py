@@ -3,6 +3,7 @@ the same steps."""
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from pathlib import Path
 
@@ -226,7 +227,9 @@ def test_a_response_is_summed_up_alone(
     path = tmp_path / "f.yaml"
     path.write_text(TEXTS["to the end"])
     run(monkeypatch, str(path), "--out", str(tmp_path / "whole"))
+    capsys.readouterr()
     run(monkeypatch, str(path), "--summary-only", "--out", str(tmp_path / "o"))
+    assert re.search(r"\n +rows( +61)+\n", capsys.readouterr().out)
     assert {file.name for file in (tmp_path / "o").iterdir()} == {"t.summary.csv", ".mechkin-files"}
     summary = (tmp_path / "o" / "t.summary.csv").read_bytes()
     assert summary == (tmp_path / "whole" / "t.summary.csv").read_bytes()
