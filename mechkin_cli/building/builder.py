@@ -304,7 +304,7 @@ def build_problem(
     from mechkin_cli.building.responses import build_responses
 
     free = replace(problem, mechanism=with_plays(mechanism, plays))
-    args = (fields, file.free_runs, free, loads, per_row, moving)
+    args = (fields, file.free_runs, free, loads, moving)
     return replace(problem, responses=build_responses(*args))
 
 
