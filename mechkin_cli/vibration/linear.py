@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import Quantity, Vector
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, is_angle
@@ -97,6 +98,12 @@ class SmallMotions:
             rates = self._rates(here, driven, self._readout(holding, 1))[0]
             efforts = solved(turned(rates)[0], left)[:, 0]
         self._held = holding, efforts
+
+    @property
+    def is_balanced(self) -> bool:
+        """Whether what holds the place is rounding beside its stiffness."""
+        largest = float(np.abs(self.matrices[0]).max(initial=0.0))
+        return float(np.abs(self.efforts).max(initial=0.0)) <= tolerances.SMALL_IMBALANCE * largest
 
     def with_forces(self, forces: Forces) -> SmallMotions:
         """The same motions, read with other loads."""
