@@ -199,12 +199,12 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
             return Search(place, forces, 0.0, SearchEnd.NO_FORCES, steps)
         forces, matrix = found
         size, slope = float(np.max(np.abs(forces))), float(np.max(np.abs(matrix)))
+        wanted = newton_step(matrix, forces)
         near = length <= tolerances.EQUILIBRIUM_STEP
         if near or size <= tolerances.EQUILIBRIUM_ROUNDING * max(largest, slope):
-            return Search(place, forces, slope, SearchEnd.FOUND, steps)
+            return Search(place, forces, max(largest, slope), SearchEnd.FOUND, steps)
         if steps == tolerances.MOST_EQUILIBRIUM_STEPS:
             return Search(place, forces, slope, SearchEnd.STEPS, steps)
-        wanted = newton_step(matrix, forces)
         length = _length(wanted)
         if tolerances.EQUILIBRIUM_REACH < length <= tolerances.WILD_STEP:
             wanted = wanted * (tolerances.EQUILIBRIUM_REACH / length)

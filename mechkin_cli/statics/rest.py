@@ -156,9 +156,9 @@ class _Branch:
                 known += rows.tolist()
                 self.unstable[rows] = _least(matrix) < 0.0
                 if chords <= tolerances.FEW_CHORDS:
-                    block = min(block + max(block // 2, 1), tolerances.MOST_REST_ROWS)
+                    block = min(2 * block, tolerances.MOST_REST_ROWS)
                 elif chords > tolerances.MANY_CHORDS:
-                    block = max(block - block // 4, 1)
+                    block = max(block - block // 3, 1)
                 continue
             if block > 1:
                 block //= 2
@@ -182,13 +182,11 @@ class _Branch:
         return Status.branch_lost, Diagnostic("rest-lost", "error", text, hint=hint)
 
     def _predicted(self, known: list[int], rows: Floats) -> Floats:
-        """The coordinates at rest (free, rows), by a parabola through rows that are known."""
-        near = known[-1]
-        apart = max(1, min(len(known) - 1, len(rows)) // 2)
-        points = [near]
-        for back in (apart, 2 * apart):
-            if back < len(known):
-                points.append(known[-1 - back])
+        """The coordinates at rest (free, rows), by a polynomial through rows that are known."""
+        most = tolerances.REST_POINTS - 1
+        apart = max(1, min(len(known) - 1, len(rows)) // most)
+        backs = [apart * k for k in range(most + 1)]
+        points = [known[-1 - back] for back in backs if back < len(known)]
         found = np.zeros((len(self.free), len(rows)))
         for k in points:
             weight = np.ones(len(rows))
@@ -284,7 +282,7 @@ class _Branch:
             # of one freedom the steps have told the slope, where there were any
             told = float(np.abs(inputs[self.free, -1] - predicted[:, -1])[0])
             far = slopes[:, :, -1]
-            if not told > tolerances.NEWTON_DIFFERENCE:
+            if not told > tolerances.TELLING_STEP:
                 known_far = self._far(last, float(times[-1]), matrix)
                 if known_far is None:
                     return None
