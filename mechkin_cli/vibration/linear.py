@@ -92,6 +92,7 @@ class SmallMotions:
         # what the coordinates need to stay
         left, _, back = self._left(self.still())
         self.efforts = _by_places(turned(back), left)[:, 0]
+        self.pushed = float(np.abs(left).max(initial=0.0))
         holding, efforts = self.coordinates, self.efforts
         if held_by is not None and tuple(held_by) != holding:
             holding = tuple(held_by)
@@ -206,9 +207,9 @@ class SmallMotions:
             return stiffness, damping, 0.5 * (inertia + inertia.T)
         forces, place = self.forces, self.place
         along = forces.stiffness(place).matrix
-        bend = self._bend()
-        if bend is not None:
-            along = along - bend / self.energy
+        stiffest = self.energy * float(np.abs(along).max(initial=0.0))
+        if self.pushed > tolerances.NO_BEND * stiffest:
+            along = along - self._bend() / self.energy
         loads = forces.session.problem.mechanism.loads
         damping = np.zeros_like(along)
         if any(load.reads_rates for load in loads):
@@ -221,13 +222,11 @@ class SmallMotions:
         stiffness, damping, inertia = named
         return stiffness, damping, inertia
 
-    def _bend(self) -> Floats | None:
+    def _bend(self) -> Floats:
         """The second derivatives (freedoms, freedoms) by the chart of the coordinates along which
-        efforts hold the place, each times its effort, J; None where nothing holds it."""
+        efforts hold the place, each times its effort, J."""
         assert self._held is not None
         names, efforts = self._held
-        if not efforts.any():
-            return None
         n = self.forces.freedoms
         pairs = [(i, k) for i in range(n) for k in range(i, n)]
         rates = np.zeros((n, len(pairs)))
