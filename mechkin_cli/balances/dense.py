@@ -13,13 +13,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.derived import AXES, directions
+from mechkin_cli.kernel.functions import atan2, tan
 from mechkin_cli.mechanism import (
     ELEMENTARY,
     GROUND,
     GROUND_NAME,
+    UPPER_HALF,
     ZERO,
     Amount,
     Attached,
+    Bushing,
     Damper,
     Frame,
     Joint,
@@ -162,6 +165,8 @@ class _Acting:
             yield load.link, self._on_link(load)
         elif isinstance(load, JointLoad):
             yield from self._on_joint(load.joint, load.coordinate, self._amount(load.amount))
+        elif isinstance(load, Bushing):
+            yield from self._bushing(load)
         elif load.between is not None:
             yield from self._between(load, load.between)
         else:
@@ -215,6 +220,47 @@ class _Acting:
         yield ends[0].link, force_at(first, pull)
         yield ends[1].link, force_at(second, scale(-1.0, pull))
 
+    def _bushing(self, load: Bushing) -> Iterator[tuple[str, Wrench]]:
+        """Resists its deflection, or its rate: by the gradient of its energy, see
+        kernel/core/forces/bushings.hpp."""
+        first, second = (self.motion[name] for name in load.links)
+        one, other = load.frames
+        x, y, z = (first.frame.vector(axis) for axis in (one.x, one.y, one.z))
+        axes = Frame(x, y, z, first.point(one.o))
+        own = [axes.components(second.frame.vector(a)) for a in (other.x, other.y, other.z)]
+        at = second.point(other.o)
+        turn, cotangent = _rotation_vector(*own)
+        if load.damps:
+            relative = subtract(second.velocity_of(other.o), first.velocity_at(at))
+            omega = axes.components(subtract(second.omega, first.omega))
+            stretch = [*axes.components(relative), *omega]
+        else:
+            deflection = (*axes.local(at), *turn)
+            stretch = [e - f for e, f in zip(deflection, load.free, strict=True)]
+        by = [0.0] * 6
+        for (i, k), entry in zip(UPPER_HALF, load.matrix, strict=True):
+            by[i] += entry * stretch[k]
+            by[k] += entry * stretch[i] if i != k else 0.0
+        force, couple = (by[0], by[1], by[2]), (by[3], by[4], by[5])
+        if not load.damps:
+            across = cross(turn, couple)
+            couple = add(couple, add(scale(0.5, across), scale(cotangent, cross(turn, across))))
+        pull = force_at(at, scale(-1.0, axes.vector(force)))
+        wrench = pull.plus(Wrench(ZERO, scale(-1.0, axes.vector(couple))))
+        yield load.links[1], wrench
+        yield load.links[0], wrench.times(-1.0)
+
+
+def _rotation_vector(x: Vector, y: Vector, z: Vector) -> tuple[Vector, float]:
+    """The rotation vector of a frame with these axes, and (1 - t/2 cot(t/2)) / t^2 for its turn."""
+    skew = (y[2] - z[1], z[0] - x[2], x[1] - y[0])
+    twice_sine, twice_cosine = norm(skew), x[0] + y[1] + z[2] - 1.0
+    if twice_sine == 0.0:
+        return ZERO, 1.0 / 12.0
+    angle = atan2(twice_sine, twice_cosine)
+    half = 0.5 * angle
+    return scale(angle / twice_sine, skew), (1.0 - half / tan(half)) / (angle * angle)
+
 
 _ORDERS = (("place", LENGTH), ("velocity", VELOCITY), ("acceleration", ACCELERATION))
 
@@ -241,6 +287,10 @@ class RowLinkMotion(NamedTuple):
     def velocity_of(self, drawn: Vector) -> Vector:
         """Velocity of a point drawn on the link."""
         return add(self.velocity, cross(self.omega, self._arm(drawn)))
+
+    def velocity_at(self, place: Vector) -> Vector:
+        """Velocity of the point of the link that is now at a place."""
+        return add(self.velocity, cross(self.omega, subtract(place, self.frame.o)))
 
     def acceleration_of(self, drawn: Vector) -> Vector:
         """Acceleration of a point drawn on the link: a + alpha x r + omega x (omega x r)."""

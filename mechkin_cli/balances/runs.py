@@ -259,13 +259,13 @@ def powers_along(result: Result, cycle: Cycle) -> dict[str, Floats]:
 
 def load_name(result: Result, number: int, load: Load | str) -> str:
     """`load 2: damper`, counted as they act; gravity is not among them."""
-    if load == GRAVITY:
+    if isinstance(load, str):
         return GRAVITY
     first = 1 if any(result.problem.mechanism.gravity) else 0
     words = {"LinkLoad": "on link", "JointLoad": "at joint"}
     kind = type(load).__name__
     what = words.get(kind, kind.lower())
-    owner = getattr(load, "link", None) or getattr(load, "joint", None)
+    owner = getattr(load, "link", None) or getattr(load, "joint", None) or load.owner
     return f"load {number - first + 1}: {what}{f' {owner}' if owner else ''}"
 
 

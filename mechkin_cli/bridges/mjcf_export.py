@@ -23,6 +23,7 @@ from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.mechanism import (
     GROUND_NAME,
     Attached,
+    Bushing,
     Damper,
     Frame,
     Joint,
@@ -493,6 +494,8 @@ class _Drawing:
                         self._leave_out("springs and dampers on coordinates", f"{load.joint}")
                     continue
                 self._between(tendons, number, load, load.between)
+            elif isinstance(load, Bushing):
+                self._leave_out("bushings", load.name or " to ".join(load.links))
             else:
                 place = ".".join(load.acts_at) if load.acts_at else load.link
                 self._leave_out("forces and torques", place)

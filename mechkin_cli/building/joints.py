@@ -419,19 +419,7 @@ def _tensor(fields: Fields, path: Path, section: written.LinkInertia) -> Tensor:
     )
     if section.axes is None:
         return xx, yy, zz, xy, xz, yz
-    x = fields.direction((*path, "axes", "x"), section.axes.x)
-    y = fields.direction((*path, "axes", "y"), section.axes.y)
-    cosine = dot(x, y)
-    if abs(cosine) > tolerances.AXES_SQUARE:
-        fields.error(
-            "axes-not-square",
-            (*path, "axes"),
-            "the axes of an inertia must be square to each other",
-            "write them as expressions",
-            measured=f"cosine of their angle {cosine:.3g}",
-            limit=f"{tolerances.AXES_SQUARE:g}",
-            numbers=(Number("cosine", abs(cosine), limit=tolerances.AXES_SQUARE),),
-        )
+    x, y = square_axes(fields, (*path, "axes"), section.axes, "an inertia")
     axes = (x, y, cross(x, y))
     matrix = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
@@ -444,6 +432,26 @@ def _tensor(fields: Fields, path: Path, section: written.LinkInertia) -> Tensor:
         return total
 
     return (entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2))
+
+
+def square_axes(
+    fields: Fields, path: Path, section: written.InertiaAxes, owner: str
+) -> tuple[Vector, Vector]:
+    """Two unit vectors; refused where they are not drawn square."""
+    x = fields.direction((*path, "x"), section.x)
+    y = fields.direction((*path, "y"), section.y)
+    cosine = dot(x, y)
+    if abs(cosine) > tolerances.AXES_SQUARE:
+        fields.error(
+            "axes-not-square",
+            path,
+            f"the axes of {owner} must be square to each other",
+            "write them as expressions",
+            measured=f"cosine of their angle {cosine:.3g}",
+            limit=f"{tolerances.AXES_SQUARE:g}",
+            numbers=(Number("cosine", abs(cosine), limit=tolerances.AXES_SQUARE),),
+        )
+    return x, y
 
 
 def _is_surely_physical(tensor: tuple[float, ...]) -> bool:

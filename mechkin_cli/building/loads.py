@@ -49,6 +49,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyLoad,
+    BushingBetweenLinks,
     DamperAtJoint,
     DamperBetweenPoints,
     FollowingInput,
@@ -219,6 +220,11 @@ class LoadBuilder:
             self._add_to_link(path, section)
         elif isinstance(section, (SpringBetweenPoints, DamperBetweenPoints)):
             self._add_between(path, section)
+        elif isinstance(section, BushingBetweenLinks):
+            from mechkin_cli.building.bushings import build_bushing
+
+            for load in build_bushing(self.fields, path, section, self.links):
+                self._put(load)
         elif isinstance(section, FrictionAtJoint):
             self._add_friction(path, section)
         else:

@@ -6,6 +6,7 @@ loaded when it is called.
 
 from __future__ import annotations
 
+from mechkin_cli.cli.vibrate_words import VIBRATE
 from mechkin_cli.cli.words import (
     FILE,
     FILES,
@@ -628,7 +629,7 @@ BENCH = Command(
 COMMANDS = {
     command.name: command
     for command in (
-        *(NEW, IMPORT, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
+        *(NEW, IMPORT, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, VIBRATE, CAM),
         *(PLOT, EXPORT, STUDY, TOLERANCES, TABLES, SCHEMA, BENCH),
     )
 }

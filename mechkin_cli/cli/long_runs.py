@@ -1,16 +1,18 @@
-"""What `mechkin analyze` does with a sweep whose rows are not held: each part of them is written
-and summed up, and forgotten."""
+"""What `mechkin analyze` does with runs whose rows are not held: each part of them is written
+and summed up, and forgotten. A thread writes while the next part is solved."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Semaphore, Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis import stream_sweep
+from mechkin_cli.analysis import stream_run
 from mechkin_cli.cli.messages import put, say
 from mechkin_cli.cli.progress import clock
 from mechkin_cli.cli.show import shown_ends, shown_summary, streamed_summary
@@ -33,6 +35,7 @@ from mechkin_cli.tables import (
     summary_table,
     write_table,
 )
+from mechkin_cli.tolerances import LONG_RUN
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -48,9 +51,9 @@ USUAL_WORDS = ("max", "min")
 """What is found of a table whose rows are not written, where it does not say."""
 
 
-def is_streamed(model: Model, command: AnalyzeCommand) -> bool:
-    """Whether the rows of the model's sweep are not held: they are not wanted, or many, and nothing
-    is asked for that needs them all at once.
+def streamed_runs(model: Model, command: AnalyzeCommand) -> list[str]:
+    """The runs of the model whose rows are not held: they are not wanted, or many, and nothing is
+    asked for that needs them all at once.
 
     Raises:
         UsageError: they are not to be written, but something that needs them is asked for.
@@ -70,22 +73,27 @@ def is_streamed(model: Model, command: AnalyzeCommand) -> bool:
     if command.summary_only:
         if needing:
             raise UsageError(f"--summary-only keeps no rows, and {needing[0]} needs them")
-        _refuse_responses(model, command)
-        return True
-    if SWEEP not in model.runs or not isinstance(model.problem.motion, LongRun):
-        return False
-    return bool(command.asked_formats) and not (needing or _reads_all_rows(model, command))
+        return _wanted_runs(model, command)
+    if needing or not command.asked_formats:
+        return []
+    return [run for run in _wanted_runs(model, command) if _is_long(model, run, command)]
 
 
-def _refuse_responses(model: Model, command: AnalyzeCommand) -> None:
-    own = [run for run in model.runs if run != SWEEP]
+def _wanted_runs(model: Model, command: AnalyzeCommand) -> list[str]:
+    """The runs that have a table which is wanted; all, where none is named."""
+    if command.table is None:
+        return list(model.runs)
     wanted = {table.run for table in chosen(tuple(model.tables), command.table)}
-    found = [run for run in own if run in wanted]
-    if found or SWEEP not in model.runs:
-        raise UsageError(
-            f"--summary-only sums up sweeps, and {', '.join(found or own)} is none; choose "
-            "tables of the sweep with --table"
-        )
+    return [run for run in model.runs if run in wanted]
+
+
+def _is_long(model: Model, run: str, command: AnalyzeCommand) -> bool:
+    """Whether the rows of a run are many, and may be taken block by block."""
+    if run != SWEEP:
+        rows = model.design.response(run).rows
+        return rows > LONG_RUN and stream_run(model, run, None, 1, [], None, 0, 0).in_blocks
+    is_long = isinstance(model.problem.motion, LongRun)
+    return is_long and not _reads_all_rows(model, command)
 
 
 def _reads_all_rows(model: Model, command: AnalyzeCommand) -> bool:
@@ -101,7 +109,7 @@ def _reads_all_rows(model: Model, command: AnalyzeCommand) -> bool:
 
 
 class StreamedRun:
-    """A sweep whose rows were not held: what is said of it afterwards."""
+    """A run whose rows were not held: what is said of it afterwards."""
 
     def __init__(self, stream: Stream, tables: Sequence[_Table], *, summary_only: bool) -> None:
         self.stream = stream
@@ -122,15 +130,19 @@ class StreamedRun:
 
 
 def stream_to(
-    model: Model, command: AnalyzeCommand, output: OutputFolder, tell: Tell
+    model: Model, run: str, command: AnalyzeCommand, output: OutputFolder, tell: Tell
 ) -> StreamedRun:
-    """Runs the sweep of a model, and writes its tables and the verdicts on its rows part by part.
+    """Makes a run of a model, and writes its tables and the verdicts on its rows part by part.
 
     Raises:
         UsageError: a file cannot be written, or a quantity needs all rows at once.
     """
     packing = command.lanes, command.threads
-    stream = stream_sweep(model, None, 1, command.table, command.mode, *packing)
+    names = [each.name for each in chosen(tuple(model.tables), command.table) if each.run == run]
+    wanted = None if command.table is None else names
+    if run != SWEEP:
+        tell(f"integrating {run}")
+    stream = stream_run(model, run, None, 1, wanted, command.mode, *packing)
     tables = [_Table(layout, command, stream) for layout in stream.layouts]
     style = CsvStyle(
         threads=command.threads, units=command.units, decimal_comma=command.decimal_comma
@@ -139,13 +151,15 @@ def stream_to(
     progress = _progress(tell, stream.run_rows)
     with files:
         for part, own in stream.parts():
-            for place, table in enumerate(tables):
-                files.write(table.add(part, own, place))
+            rows: list[tuple[Columns, Sequence[str]]] = [
+                (table.add(part, own, place), ()) for place, table in enumerate(tables)
+            ]
             if not command.summary_only:
-                files.write(_verdicts(part, own), whole=("row",))
+                rows.append((_verdicts(part, own, run), ("row",)))
+                files.write(rows)
             span = part.analysis.result.row_states.span
             progress(span.first + span.rows)
-            del part
+            del part, rows
     for table in tables:
         summary = table.summary(stream)
         if summary is not None:
@@ -169,25 +183,57 @@ def _progress(tell: Tell, rows: int) -> Callable[[int], None]:
     return told
 
 
-def _verdicts(part: PartRows, own: slice) -> Columns:
+def _verdicts(part: PartRows, own: slice, run: str) -> Columns:
     """The part's own rows of the table of verdicts."""
     result = part.analysis.result
-    table = rows_table(result, SWEEP)
+    table = rows_table(result, run)
     first, *others = (column.between(own) for column in table.columns)
     numbers = first.with_values(np.asarray(first.values) + result.row_states.span.first)
     return Columns(table.name, table.title, (numbers, *others))
 
 
 class _Files:
-    """The files of some tables in some formats, which are begun with their first rows."""
+    """The files of some tables in some formats, which are begun with their first rows.
+
+    A thread writes them in the order in which they are given, while the caller solves the rows of
+    the next part; it waits where those before are not written yet, so that two parts are held.
+    """
 
     def __init__(self, formats: Sequence[str], output: OutputFolder, style: CsvStyle) -> None:
         self._formats, self._output, self._style = formats, output, style
         self._room = TextRoom()
         self._writers: dict[str, list[tuple[TableWriter, OutputFile]]] = {}
+        self._waiting: SimpleQueue[list[tuple[Columns, Sequence[str]]] | None] = SimpleQueue()
+        self._free = Semaphore(1)
+        self._error: BaseException | None = None
+        # an interrupt ends the process without it
+        self._thread = Thread(target=self._write_all, name="tables", daemon=True)
 
-    def write(self, table: Columns, whole: Sequence[str] = ()) -> None:
-        """Adds rows to the files of a table; columns of the labels `whole` hold whole numbers."""
+    def write(self, tables: list[tuple[Columns, Sequence[str]]]) -> None:
+        """Adds rows of a part to the files of tables; columns of the labels beside a table hold
+        whole numbers.
+
+        Raises:
+            UsageError: a file cannot be written, now or of the part before.
+        """
+        self._free.acquire()
+        if self._error is not None:
+            raise self._error
+        if not self._thread.ident:
+            self._thread.start()
+        self._waiting.put(tables)
+
+    def _write_all(self) -> None:
+        while (tables := self._waiting.get()) is not None:
+            try:
+                for table, whole in tables if self._error is None else ():
+                    self._write(table, whole)
+            except BaseException as error:  # raised where rows are given
+                self._error = error
+            del tables
+            self._free.release()
+
+    def _write(self, table: Columns, whole: Sequence[str]) -> None:
         if table.name not in self._writers:
             heading = heading_of(table, whole)
             self._writers[table.name] = [self._begun(heading, name) for name in self._formats]
@@ -208,11 +254,21 @@ class _Files:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if self._thread.ident:
+            self._waiting.put(None)
+            self._thread.join()
+        failed = self._error if kind is None else None
+        if failed is not None:
+            kind, error, trace = type(failed), failed, failed.__traceback__
         begun = [each for writers in self._writers.values() for each in writers]
-        for writer, _ in () if kind is not None else begun:
-            writer.end()
-        for _, file in begun:
-            file.__exit__(kind, error, trace)
+        try:
+            for writer, _ in () if kind is not None else begun:
+                writer.end()
+        finally:
+            for _, file in begun:
+                file.__exit__(kind, error, trace)
+        if failed is not None:
+            raise failed
 
 
 ENDS = 30

@@ -28,6 +28,7 @@ from mechkin_cli.mechanism import (
     INSTANT_KINDS,
     ORIENTATION_KINDS,
     Attached,
+    Bushing,
     Coordinate as NamedCoordinate,
     DistanceConstraint,
     Joint,
@@ -345,6 +346,8 @@ def _load_cause(problem: Problem, idle: Idle, link: str, load: Load) -> tuple[st
                 return f"a force acts on {link} off that line", off
             if load.axes == "link" and not _acts_along(load, line):
                 return f"a force across that line turns with {link}", "its axes are the link's"
+    if isinstance(load, Bushing) and link in load.links:
+        return f"a bushing holds {link}", "which moves with it"
     if load.acts_at is not None and load.acts_at in idle.moves:
         return f"a load acts on {'.'.join(load.acts_at)}", "which moves with it"
     for end in load.ends:

@@ -60,6 +60,8 @@ class LoadCode(IntEnum):
     DAMPER = 6
     COORDINATE_SPRING = 7
     COORDINATE_DAMPER = 8
+    BUSHING = ...
+    BUSHING_DAMPER = ...
 
 class OutputCode(IntEnum):
     STATE = 0
@@ -100,6 +102,10 @@ class OutputCode(IntEnum):
     MULTIPLIER = ...
     MESH_FORCE = ...
     TENSION = ...
+    BUSHING_FORCE = ...
+    BUSHING_MOMENT = ...
+    BUSHING_SHIFT = ...
+    BUSHING_TURN = ...
 
 class ContactCode(IntEnum):
     RADIAL = 0
@@ -318,6 +324,16 @@ class PlanBuilder:
         other_point: Triple,
         vector: Triple,
         varying: bool = False,
+    ) -> None: ...
+    def add_bushing(
+        self,
+        damps: bool,
+        first: int,
+        second: int,
+        on_first: Sequence[float],
+        on_second: Sequence[float],
+        matrix: Sequence[float],
+        free: Sequence[float],
     ) -> None: ...
     def set_load_program(
         self,
@@ -771,6 +787,8 @@ def respond(
     straight: bool,
     lanes: int,
     threads: int,
+    block: int = 0,
+    taker: Callable[[int, int, list[Any]], bool] | None = None,
 ) -> tuple[Any, ...]: ...
 
 class DrivenLaws:

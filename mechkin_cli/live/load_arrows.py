@@ -12,6 +12,7 @@ from mechkin_cli.expressions import Vector
 from mechkin_cli.mechanism import (
     GROUND_NAME,
     Attached,
+    Bushing,
     JointLoad,
     LinkLoad,
     Spring,
@@ -76,6 +77,11 @@ def _of_load(recording: Any, load: Any, links: Sequence[str], is_pull: bool) -> 
         is_drawn = all(end.link in links for end in load.between)
         for k, end in enumerate(load.between if is_drawn else ()):
             yield f"{word} on {end.link}", end, _pull(recording, load, 1.0 - 2.0 * k)
+    elif isinstance(load, Bushing) and load.name and not load.damps and load.links[1] in links:
+        place = Attached(load.links[1], load.frames[1].o)
+        for name, unit in ((f"{load.name}.force", FORCE), (f"{load.name}.moment", MOMENT)):
+            if takes(recording, [name]):
+                yield name, place, partial(_told, recording, name, unit)
 
 
 def _on_link(recording: Any, link: str, amounts: Callable[[], Numbers], unit: Dimension) -> Numbers:
@@ -110,18 +116,21 @@ def axis_of(recording: Any, joint: Any) -> Callable[[], Numbers] | None:
     name = f"{joint.name}.axis"
     if name not in recording.known:
         return (lambda: NORMAL) if joint.plane else None
-    if not takes(recording, [name]):
-        return None
+    return partial(_in_space, recording, name) if takes(recording, [name]) else None
 
-    def along() -> Numbers:
-        value = recording.resolve(name).value
-        parts = value.components if isinstance(value, Vector) else (value,)
-        found: list[Any] = [0.0, 0.0, 0.0]
-        for place, part in zip(recording.known[name].places, parts, strict=True):
-            found[place] = part
-        return found
 
-    return along
+def _told(recording: Any, name: str, unit: Dimension) -> Numbers:
+    return _in_units(recording, _in_space(recording, name), unit)
+
+
+def _in_space(recording: Any, name: str) -> Numbers:
+    """The three components of a vector, whatever of it users see."""
+    value = recording.resolve(name).value
+    parts = value.components if isinstance(value, Vector) else (value,)
+    found: list[Any] = [0.0, 0.0, 0.0]
+    for place, part in zip(recording.known[name].places, parts, strict=True):
+        found[place] = part
+    return found
 
 
 def takes(recording: Any, names: Sequence[str]) -> bool:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.joint import *
     from mechkin_cli.mechanism.long_run import *
     from mechkin_cli.mechanism.model import (
+        UPPER_HALF as UPPER_HALF,
         Amount as Amount,
+        Bushing as Bushing,
         Damper as Damper,
         Drives as Drives,
         JointLoad as JointLoad,
@@ -55,8 +57,8 @@ __getattr__, __dir__ = lazy_names(
         "joint": "GROUND_NAME Joint counted far_link frame_on is_told is_written stop_of "
         "told_coordinates",
         "long_run": "LongRun long_motion",
-        "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
-        "Varying diagonal without_effort",
+        "model": "Amount Bushing Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring "
+        "Tensor UPPER_HALF Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "
         "ORDERS Parameter Rest Span",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "

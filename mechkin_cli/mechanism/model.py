@@ -26,7 +26,7 @@ from mechkin_cli.mechanism.joint import (
 )
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.relation import Extent, Relation
-from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, subtract
+from mechkin_cli.mechanism.vectors import ZERO, Frame, Vector, norm, subtract
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import largest, nonzero, smallest
 
@@ -196,6 +196,11 @@ class _Load:
         """The points that it pulls towards each other, if any."""
         return ()
 
+    @property
+    def owner(self) -> str:
+        """The name of its quantities, if it has some."""
+        return ""
+
     def renumbered(self, numbers: Mapping[int, int]) -> Self:
         """The load with the laws of its values under other numbers."""
         return self
@@ -308,7 +313,48 @@ class Damper(_Element):
         return True
 
 
-Load = LinkLoad | JointLoad | Spring | Damper
+UPPER_HALF = tuple((i, k) for i in range(6) for k in range(i, 6))
+"""The places of the numbers of a symmetric matrix of six rows."""
+
+
+@dataclass(frozen=True)
+class Bushing(_Load):
+    """A spring, or a damper, between two frames in all six directions.
+
+    Its law stands in kernel/core/forces/bushings.hpp. The matrix is symmetric, its upper half row
+    after row: N/m, N/rad, N m/rad, or per s. `free` are three shifts in m and the components of a
+    rotation vector. Without a name it has no quantities.
+    """
+
+    name: str
+    links: tuple[str, str]
+    frames: tuple[Frame, Frame]
+    matrix: tuple[float, ...]
+    free: tuple[float, ...]
+    damps: bool
+
+    @property
+    def owner(self) -> str:
+        """As of every load."""
+        return self.name
+
+    @property
+    def reads_rates(self) -> bool:
+        """As of every load."""
+        return self.damps
+
+    @property
+    def has_potential(self) -> bool:
+        """As of every load."""
+        return not self.damps
+
+    @property
+    def dissipates(self) -> bool:
+        """As of every load."""
+        return self.damps
+
+
+Load = LinkLoad | JointLoad | Spring | Damper | Bushing
 
 
 def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
@@ -353,6 +399,11 @@ class Mechanism:
                 length = norm(subtract(other.vector, one.vector))
                 found.append(Spring((one, other), None, None, 0.0, length, pull))
         return tuple(found)
+
+    @property
+    def named_bushings(self) -> tuple[str, ...]:
+        """The bushings that have quantities, by name."""
+        return tuple(dict.fromkeys(load.owner for load in self.loads if load.owner))
 
     @property
     def losses(self) -> tuple[Rubbing, ...]:

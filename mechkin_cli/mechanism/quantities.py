@@ -28,6 +28,7 @@ from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import (
     ACCELERATION,
+    ANGLE,
     ANGULAR_ACCELERATION,
     ANGULAR_RATE,
     DIMENSIONLESS,
@@ -98,6 +99,7 @@ class Elements(NamedTuple):
     couplings: Mapping[str, Relation]
     frictions: Sequence[Rubbing]
     spins: Sequence[DistanceConstraint]
+    bushings: Sequence[str]
     plane: bool
     word: str | None = None
 
@@ -113,6 +115,7 @@ class Elements(NamedTuple):
             mechanism.couplings,
             mechanism.frictions,
             mechanism.spins,
+            mechanism.named_bushings,
             mechanism.plane,
         )
 
@@ -160,6 +163,7 @@ class ElementsByName:
             own(4, of.couplings),
             self._frictions.get(word, ()),
             self._spins.get(word, ()),
+            [name for name in of.named_bushings if name == word],
             of.plane,
             word,
         )
@@ -227,6 +231,7 @@ def catalogue(
         *_of_links(elements),
         *_of_frictions(elements),
         *_of_couplings(elements),
+        *_of_bushings(elements),
         *_of_held(held),
         *_of_ground(elements.word),
     ):
@@ -241,10 +246,11 @@ def catalogue(
 _IN_PLANE: tuple[Kind, ...] = (
     *("point", "direction", "joint_point", "slip", "axis", "screw_point", "finite_point"),
     *("force", "total_force", "friction_force", "shaking_force", "inertia_force", "tooth_force"),
+    *("bushing_force", "bushing_shift"),
 )
 _ALONG_NORMAL: tuple[Kind, ...] = (
     *("omega", "alpha", "moment", "total_moment", "moment_about_origin", "friction_moment"),
-    *("shaking_moment", "inertia_moment"),
+    *("shaking_moment", "inertia_moment", "bushing_moment", "bushing_turn"),
 )
 _WITHOUT_MEANING: tuple[Kind, ...] = ("screw_pitch", "finite_slide")
 _TOLD = dict.fromkeys(_IN_PLANE, "xy") | dict.fromkeys(_ALONG_NORMAL, "z")
@@ -312,6 +318,22 @@ def _of_frictions(elements: Elements) -> Iterator[Wanted]:
         yield Wanted(f"{owner}.friction_force", "friction_force", owner, FORCE, True)
         yield Wanted(f"{owner}.friction_moment", "friction_moment", owner, MOMENT, True)
         yield Wanted(f"{owner}.friction_power", "friction_power", owner, POWER, False)
+
+
+_BUSHING: dict[str, tuple[Kind, Dimension]] = {
+    "force": ("bushing_force", FORCE),
+    "moment": ("bushing_moment", MOMENT),
+    "shift": ("bushing_shift", LENGTH),
+    "turn": ("bushing_turn", ANGLE),
+}
+
+
+def _of_bushings(elements: Elements) -> Iterator[Wanted]:
+    """What each exerts on its second link, the moment about its point there, in ground axes, and
+    its deflection in its own axes."""
+    for name in elements.bushings:
+        for word, (kind, dimension) in _BUSHING.items():
+            yield Wanted(f"{name}.{word}", kind, name, dimension, True)
 
 
 def _of_couplings(elements: Elements) -> Iterator[Wanted]:

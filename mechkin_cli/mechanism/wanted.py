@@ -108,6 +108,10 @@ Kind = Literal[
     "coupling_efficiency",
     "tooth_force",
     "tension",
+    "bushing_force",
+    "bushing_moment",
+    "bushing_shift",
+    "bushing_turn",
 ]
 """Some are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -19,12 +19,13 @@ from mechkin_cli.analysis import (
     run_free,
     run_name,
     run_sweep,
-    stream_sweep,
+    stream_run,
 )
 from mechkin_cli.arguments import Setting, a_path, a_text, a_whole_number, settings, texts
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem
+from mechkin_cli.model.parameters import Parameters
 from mechkin_cli.model.position import Position, solver_of
 from mechkin_cli.session import Session
 from mechkin_cli.show import Listed, Listing, Named
@@ -48,50 +49,15 @@ if TYPE_CHECKING:
     from mechkin_cli.session import Precise
     from mechkin_cli.studies import StudyFiles, StudyResults
     from mechkin_cli.variants import Reduce, Variants
-
-
-class Parameters(Listed, Mapping[str, float]):
-    """The parameters of a model by name: values in the file's units, in the file's order.
-
-    Example:
-        >>> from mechkin_cli import load
-        >>> given = load("mechanisms/dissertation/rcsr.yaml").parameters
-        >>> given["P1"], given.unit("P1")
-        (0.5, 'in')
-    """
-
-    def __init__(self, problem: Problem) -> None:
-        self._known, self._units = problem.parameters, problem.units
-
-    def __getitem__(self, name: str) -> float:
-        quantity = self._known[name]
-        in_si = float(quantity.value)  # type: ignore[arg-type]
-        return self._units.from_si(in_si, quantity.dimension)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._known)
-
-    def __len__(self) -> int:
-        return len(self._known)
-
-    def unit(self, name: str) -> str:
-        """The unit of a parameter in the file's units, "" of a pure number."""
-        return self._units.label(self._known[name].dimension)
-
-    @property
-    def listing(self) -> Listing:
-        """Names, values and units."""
-        rows = tuple((name, f"{value:.10g}", self.unit(name)) for name, value in self.items())
-        head = f"{len(rows)} parameter{'' if len(rows) == 1 else 's'}"
-        return Listing(head, ("parameter", "value", "unit") if rows else (), rows)
+    from mechkin_cli.vibration import Vibration
 
 
 class Model(Listed):
     """A checked mechanism file, as `mk.load` and `mk.loads` return it.
 
     `analyze` runs its sweep, `respond` its responses, and `equilibrium` finds where its loads
-    balance; `modes`, `ranges` and `mobility` tell how it
-    can be assembled and moved. Values are in the file's units throughout.
+    balance; `modes`, `ranges` and `mobility` tell how it can be assembled and moved, `vibration`
+    how it vibrates. Values are in the file's units throughout.
 
     Attributes:
         design: the file with the values of its parameters, in SI and in the kernel.
@@ -284,15 +250,17 @@ class Model(Listed):
         self,
         quantities: Iterable[str] | None = None,
         *,
+        run: str | None = None,
         rows: int = 4096,
         tables: Sequence[str] | None = None,
         mode: str | None = None,
         lanes: int = 0,
         threads: int = 0,
     ) -> Stream:
-        """The sweep block by block, in constant memory: the same numbers as those of `analyze`.
+        """The sweep block by block, or the response named by `run`, in constant memory: the same
+        numbers as those of `analyze` and `respond`.
 
-        Args and errors are those of `analyze`; `rows` of a block, but for the last one.
+        Args and errors are those of these; `rows` of a block, but for the last one.
 
         Returns:
             Gives the blocks one after the other, and says afterwards what the run has to say.
@@ -304,7 +272,7 @@ class Model(Listed):
             >>> [round(float(block["O4.theta"].max()), 3) for block in blocks][:2]
             [37.231, 11.327]
         """
-        return stream_sweep(self, quantities, rows, tables, mode, lanes, threads)
+        return stream_run(self, run, quantities, rows, tables, mode, lanes, threads)
 
     def respond(
         self,
@@ -409,6 +377,38 @@ class Model(Listed):
             UsageError: an unknown run, table or mode.
         """
         return run_free(self, name, quantities, tables, mode)
+
+    def vibration(
+        self,
+        run: str | None = None,
+        row: int = 0,
+        coordinates: Sequence[str] | None = None,
+        *,
+        held: Sequence[str] = (),
+    ) -> Vibration:
+        """Small motions about a row of a run: matrices, natural frequencies, mode shapes, state
+        space, in SI units.
+
+        Args:
+            run: its name; None: the file's first equilibria, else its first run.
+            row: its number, from 0.
+            coordinates: that name the motion, as many as there are freedoms; None: the inputs of a
+                sweep, or the independent coordinates of the run's start.
+            held: inputs of a sweep that their drives hold or move; the others are free.
+
+        Raises:
+            InvalidFile: the run cannot be solved.
+            UsageError: an unknown run, row or coordinate, or a row without a position.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> m = load("mechanisms/vibration/engine_mounts.yaml")
+            >>> [round(float(f), 2) for f in m.vibration(row=2).frequencies]
+            [6.76, 9.23, 10.01, 10.06, 12.09, 13.71]
+        """
+        from mechkin_cli.model.vibrations import vibration
+
+        return vibration(self, run, row, coordinates, held)
 
     def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
         """All runs of the file, or one.

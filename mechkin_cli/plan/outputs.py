@@ -28,7 +28,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.records import Demand, Output, OutputCode, hand_over_outputs
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.units import DIMENSIONLESS, FORCE
+from mechkin_cli.units import DIMENSIONLESS, FORCE, LENGTH, MOMENT
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Outputs, Plan
@@ -41,6 +41,7 @@ _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
 FRICTION_KINDS = {"normal_load", "friction_force", "friction_moment", "friction_power"}
 COUPLING_KINDS = {"coupling_force", "coupling_torque", "tooth_force", "tension"}
+BUSHING_KINDS = {"bushing_force", "bushing_moment", "bushing_shift", "bushing_turn"}
 REACTION_KINDS = WRENCH_KINDS | COUPLING_KINDS
 """What redundant constraints may leave open."""
 _VERDICT_KINDS = {"friction_state", "self_locking", "reaction_level"}
@@ -68,6 +69,8 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
             demand |= Demand.VELOCITY | Demand.ACCELERATION
         elif quantity.order == 3:
             demand |= Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
+        elif quantity.kind in ("bushing_force", "bushing_moment"):
+            demand |= Demand.VELOCITY
         elif quantity.kind in FORCE_KINDS:
             demand |= forces_demand(mechanism)
         elif quantity.kind == "kinetic_energy":
@@ -94,7 +97,7 @@ def forces_demand(mechanism: Mechanism) -> Demand:
 def needs_all_links(mechanism: Mechanism, wanted: Iterable[Wanted]) -> bool:
     """Whether some quantities are of the mechanism as a whole: forces and energies."""
     wanted = list(wanted)
-    energies = any(quantity.kind in _ENERGY_KINDS for quantity in wanted)
+    energies = any(quantity.kind in _ENERGY_KINDS | BUSHING_KINDS for quantity in wanted)
     return energies or bool(demand_of(mechanism, wanted) & Demand.FORCES)
 
 
@@ -219,6 +222,8 @@ class OutputPlan:
             return self._friction(wanted)
         if kind in COUPLING_KINDS:
             return self._coupling(wanted)
+        if kind in BUSHING_KINDS:
+            return self._bushing(wanted)
         if kind == "self_locking":
             return self._output(OutputCode.SELF_LOCKING, 0, 1.0)
         code = OutputCode[kind.upper()]
@@ -230,6 +235,16 @@ class OutputPlan:
         code = OutputCode[wanted.kind.upper()]
         factor = {FORCE: length, DIMENSIONLESS: 1.0}.get(wanted.dimension, length * length)
         return self._output(code, names.index(wanted.owner), factor)
+
+    def _bushing(self, wanted: Wanted) -> int:
+        """What a bushing exerts, or its deflection."""
+        length = self.layout.length
+        loads = self.layout.mechanism.loads
+        number, *others = (k for k, load in enumerate(loads) if load.owner == wanted.owner)
+        factor = {FORCE: length, LENGTH: length, MOMENT: length * length}.get(wanted.dimension, 1.0)
+        # its damper is the next load
+        damped = len(others) if wanted.dimension in (FORCE, MOMENT) else 0
+        return self._output(OutputCode[wanted.kind.upper()], number, factor, freedom=damped)
 
     def _coupling(self, wanted: Wanted) -> int:
         """What a coupling applies along one of its coordinates, or by its teeth."""

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism import (
     GROUND_NAME,
+    UPPER_HALF,
     ZERO,
     Attached,
+    Bushing,
     Damper,
     JointLoad,
     LinkLoad,
@@ -30,7 +32,7 @@ from mechkin_cli.plan.records import ContactCode, FreeCode, LoadCode, PlanRecord
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.mechanism import Constraint, Loss, Motion, Rubbing, Vector
+    from mechkin_cli.mechanism import Constraint, Load, Loss, Motion, Rubbing, Vector
     from mechkin_cli.structure import Loop
 
 
@@ -113,7 +115,7 @@ def _code(motion: Motion | None) -> int:
     return NO_MOTION if motion is None else FreeCode[motion.upper()]
 
 
-def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) -> PlanRecord:
+def load_record(layout: Layout, load: Load) -> PlanRecord:
     """The record of one load; of a varying one without its value."""
     unit = layout.length
     if isinstance(load, LinkLoad):
@@ -125,6 +127,8 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
         value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
         code = LoadCode.COORDINATE
         return record("add_load", code, axis, reference, freedom, ZERO, ZERO, value, varies)
+    if isinstance(load, Bushing):
+        return _bushing(layout, load)
     if load.between:
         p, q = load.between
         if isinstance(load, Spring):
@@ -135,6 +139,21 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
         links = layout.link_number[p.link], layout.link_number[q.link]
         return record("add_load", code, *links, 0, layout.point(p), layout.point(q), data, False)
     return _joint_spring(layout, load)
+
+
+def _bushing(layout: Layout, load: Bushing) -> PlanRecord:
+    unit = layout.length
+    first, second = (layout.link_number[name] for name in load.links)
+    on_first, on_second = load.frames
+    # by a deflection in length units, the force and the moment are in theirs
+    scales = [1.0] * 3 + [1.0 / unit] * 3
+    matrix = [
+        entry * (scales[i] * scales[k])
+        for (i, k), entry in zip(UPPER_HALF, load.matrix, strict=True)
+    ]
+    free = [*scale(1.0 / unit, load.free[:3]), *load.free[3:]]  # type: ignore[arg-type]
+    frames = layout.frame_on(first, on_first), layout.frame_on(second, on_second)
+    return record("add_bushing", load.damps, first, second, *frames, matrix, free)
 
 
 def _link_load(layout: Layout, load: LinkLoad) -> PlanRecord:

@@ -68,6 +68,7 @@ _CONSTANTS = {
     "set_inertia": (1, 2, 3),
     "set_gravity": (0,),
     "add_load": (4, 5, 6),
+    "add_bushing": (3, 4, 5, 6),
     "set_load_program": (1, 3, 4),
     "add_friction": (5, 6, 7, 8, 9, 10),
     "add_contact": (1, 2, 3, 4, 5),

@@ -6,12 +6,14 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mechkin_cli.plots.answers import *
     from mechkin_cli.plots.bands import *
     from mechkin_cli.plots.curves import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "answers": "answer_image",
         "bands": "Band Bands",
         "curves": "Picture drawn format_of image picture table_picture",
     },

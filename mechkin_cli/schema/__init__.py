@@ -43,11 +43,13 @@ __getattr__, __dir__ = lazy_names(
         "json_schema": "SCHEMAS json_schema_text",
         "limits": "LimitSection",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
-        "Link LinkInertia PlanarJoint PointJoint SlottedSphereJoint SphereCylinderJoint "
-        "SphereGrooveJoint SpherePlaneJoint TwoTurnJoint UniversalJoint WeldJoint",
-        "loads": "AnyLoad DamperAtJoint DamperBetweenPoints FallingCoefficient ForceOnJoint "
-        "ForceOnLink FrictionAtJoint Gravity SpringAtJoint SpringBetweenPoints TableValue "
-        "TorqueOnJoint TorqueOnLink",
+        "InertiaAxes Link LinkInertia PlanarJoint PointJoint SlottedSphereJoint "
+        "SphereCylinderJoint SphereGrooveJoint SpherePlaneJoint TwoTurnJoint UniversalJoint "
+        "WeldJoint",
+        "loads": "AnyLoad BushingBetweenLinks BushingDamping BushingFree BushingStiffness "
+        "DamperAtJoint DamperBetweenPoints FallingCoefficient ForceOnJoint ForceOnLink "
+        "FrictionAtJoint Gravity SpringAtJoint SpringBetweenPoints TableValue TorqueOnJoint "
+        "TorqueOnLink",
         "motion": "AssemblySection ConstantAcceleration ConstantRate ExpressionLaw FollowingInput "
         "HeldInput InputMotion Law ListedInput MotionSection Polynomial Rise Segment Sequence Sine "
         "SweptInput TableLaw TimeSection WithRates",

@@ -30,8 +30,10 @@ from mechkin_cli.schema.base import (
 )
 from mechkin_cli.schema.curves import EXAMPLES
 from mechkin_cli.schema.file import AnyFile, MechanismFile
+from mechkin_cli.schema.loads import EXAMPLES_OF_BUSHINGS
 from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.renamed import with_old_keys
+from mechkin_cli.schema.responses import EXAMPLES_BY_KEY, EXAMPLES_OF_EQUILIBRIA
 from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
 from mechkin_cli.schema.study import StudyFile
 from mechkin_cli.schema.validation import RESERVED
@@ -139,6 +141,7 @@ _R: Final = {"type": "R", "links": ["ground", "crank"], "point": [0, 0, 0], "axi
 _TURN: Final = {"from": 0, "to": 360, "step": 5, "rate": "10 rad/s"}
 
 BY_KEY: Final[dict[str, Any]] = {
+    **EXAMPLES_BY_KEY,
     "accept": ["unphysical-inertia"],
     "actuators": ["leg1.s", "leg2.s"],
     "across": [0, 0, 1],
@@ -169,7 +172,6 @@ BY_KEY: Final[dict[str, Any]] = {
     "equations": ["crank", "rocker", "-O1"],
     "follow": ["O1"],
     "follower": {"type": "translating", "contact": "flat", "base_radius": "40 mm"},
-    "equilibria": {"ride": {"near": {"A.theta": 20}}},
     "force": [0, 0, "-10 N"],
     "groove": [1, 0, 0],
     "hidden": ["frame"],
@@ -199,14 +201,12 @@ BY_KEY: Final[dict[str, Any]] = {
     "remarks": [{"text": "The source rounds to six digits."}],
     "responses": {"fall": {"start": {"A.theta": 80}, "time": {"from": 0, "to": 3, "step": 0.1}}},
     "radii": ["20 mm", "40 mm"],
-    "rest": ["B.s"],
     "rows_by": "theta",
     "runs": ["sweep", "fall"],
     "shapes": {"coupler": "plate"},
     "slot": [0, 0, 1],
     "source": "A textbook, page 12",
     "start": {"A.theta": "80 deg", "A.theta_dot": "0 rad/s"},
-    "starts": 200,
     "stop": [{"turns": "A.theta", "count": 3}],
     "summary": ["max", "min", "rms"],
     "sum": "10 deg",
@@ -222,17 +222,16 @@ BY_KEY: Final[dict[str, Any]] = {
     "values": [0, 15, "40 deg"],
     "vector": [1, 0, 0],
     "view": {"hidden": ["frame"]},
-    "window": {"A.theta": {"from": -180, "to": 180}},
     "x": [1, 0, 0],
     "y": [0, 1, 0],
     "zero": {"ground": [1, 0, 0], "crank": [0, 1, 0]},
 }
 
 BY_SECTION: Final[dict[tuple[str, str], Any]] = {
+    **EXAMPLES_OF_BUSHINGS,
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
-    ("Equilibrium", "time"): "2 s",
-    ("Equilibrium", "driven"): {"A.theta": {"at": "30 deg"}},
+    **EXAMPLES_OF_EQUILIBRIA,
     ("Column", "value"): "norm(O1.force)",
     ("Cylinder", "bore"): "50 mm",
     ("Cylinder", "from"): "P",

@@ -31,7 +31,7 @@ from mechkin_cli.schema.scalars import (
 
 
 class InertiaAxes(Section):
-    """The axes in which an inertia tensor is written, drawn in ground axes of the home drawing.
+    """The axes of an inertia tensor or a bushing, drawn in ground axes of the home drawing.
 
     They are normalised, must be square to one another to 1e-9, and z = x cross y.
     """

@@ -1,4 +1,4 @@
-"""`loads:` - gravity, forces, torques, springs, dampers and friction.
+"""`loads:` - gravity, forces, torques, springs, dampers, bushings and friction.
 
 A value may be an expression of coordinates, their rates and `time`, or `{table: file.csv}`.
 """
@@ -6,6 +6,7 @@ A value may be an expression of coordinates, their rates and `time`, or `{table:
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
 from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, by_word, refuse
+from mechkin_cli.schema.links_joints import InertiaAxes, PointJoint
 from mechkin_cli.schema.scalars import (
     AccelerationVector,
     Angle,
@@ -230,6 +231,127 @@ class DamperAtJoint(InRuns):
     """Force per speed, or moment per angular rate (bare numbers: per rad/s)."""
 
 
+class BushingStiffness(Section):
+    """The stiffness of a bushing along its axes and about them."""
+
+    tag = "(diagonal)"
+
+    x: Stiffness = "0"
+    """Force per length along x."""
+    y: Stiffness = "0"
+    """Force per length along y."""
+    z: Stiffness = "0"
+    """Force per length along z."""
+    rx: Stiffness = "0"
+    """Moment per angle about x (bare numbers: per rad)."""
+    ry: Stiffness = "0"
+    """Moment per angle about y (bare numbers: per rad)."""
+    rz: Stiffness = "0"
+    """Moment per angle about z (bare numbers: per rad)."""
+
+
+class BushingDamping(Section):
+    """The damping of a bushing along its axes and about them."""
+
+    tag = "(diagonal)"
+
+    x: Damping = "0"
+    """Force per speed along x."""
+    y: Damping = "0"
+    """Force per speed along y."""
+    z: Damping = "0"
+    """Force per speed along z."""
+    rx: Damping = "0"
+    """Moment per angular rate about x (bare numbers: per rad/s)."""
+    ry: Damping = "0"
+    """Moment per angular rate about y (bare numbers: per rad/s)."""
+    rz: Damping = "0"
+    """Moment per angular rate about z (bare numbers: per rad/s)."""
+
+
+class BushingFree(Section):
+    """Where a bushing has no force: the deflection from the drawing, along and about its axes."""
+
+    x: Length = "0"
+    """Shift along x."""
+    y: Length = "0"
+    """Shift along y."""
+    z: Length = "0"
+    """Shift along z."""
+    rx: Angle = "0"
+    """Component of the rotation vector along x."""
+    ry: Angle = "0"
+    """Component of the rotation vector along y."""
+    rz: Angle = "0"
+    """Component of the rotation vector along z."""
+
+
+_SIX = Limits(min_length=6, max_length=6)
+_Entry = TypeVar("_Entry")
+SixBySix = Annotated[tuple[Annotated[tuple[_Entry, ...], _SIX], ...], _SIX]
+"""Six rows of six numbers: x, y, z, rx, ry, rz."""
+
+
+def _diagonal_or_matrix(value: Any) -> str:
+    return "(matrix)" if isinstance(value, (list, tuple)) else "(diagonal)"
+
+
+class BushingBetweenLinks(PointJoint, InRuns):
+    """A spring between two links in all six directions: a rubber mount, a flexure.
+
+    It resists the shift of the second link's point in the axes, which ride on the first link, and
+    the rotation vector of the second link against the first, both from the drawing.
+    """
+
+    advice: ClassVar[dict[str, str]] = {
+        "axis": "write axes: {x: [1, 0, 0], y: [0, 1, 0]}; its own axes are x, y and z",
+        "preload": "write free: {z: 2 mm}, where it has no force",
+        **dict.fromkeys(("k", "matrix"), "write stiffness: {x: 200 N/mm, rz: 5 N*m/rad}"),
+        **dict.fromkeys(("c", "d"), "write damping: {x: 2 N*s/mm}"),
+    }
+
+    type: Literal["bushing"]
+    name: Name | None = None
+    """Its name, by which columns read its force; left out, it has no quantities."""
+    stiffness: Annotated[
+        Annotated[SixBySix[Stiffness], "(matrix)"] | Annotated[BushingStiffness, "(diagonal)"],
+        FormChoice(_diagonal_or_matrix),
+        SchemaName("StiffnessInSix"),
+    ]
+    """Force and moment per deflection: {x, y, z, rx, ry, rz}, or a symmetric matrix of six rows."""
+    damping: (
+        Annotated[
+            Annotated[SixBySix[Damping], "(matrix)"] | Annotated[BushingDamping, "(diagonal)"],
+            FormChoice(_diagonal_or_matrix),
+            SchemaName("DampingInSix"),
+        ]
+        | None
+    ) = None
+    """Force and moment per velocity, likewise; left out, it does not damp."""
+    axes: InertiaAxes | None = None
+    """Its axes in the home drawing, which turn with the first link; left out, those of the
+    ground."""
+    free: BushingFree | None = None
+    """The deflection without force; left out, it has no force as drawn."""
+
+
+EXAMPLES_OF_BUSHINGS: Final[dict[tuple[str, str], Any]] = {
+    **{
+        (section, key): example
+        for section in ("BushingBetweenLinks", "PlaneBushing")
+        for key, example in {
+            "name": "mount",
+            "stiffness": {"x": "200 N/mm", "rz": "5 N*m/rad"},
+            "damping": {"x": "2 N*s/mm"},
+            "free": {"x": "2 mm"},
+        }.items()
+    },
+    ("PlaneBushing", "point"): [0, "10 mm"],
+    ("PlaneBushing", "x"): [1, 2],
+}
+"""Examples for editors, by section and key."""
+
+
 class FallingCoefficient(Section):
     """A coefficient of friction that falls from rest to sliding."""
 
@@ -321,16 +443,17 @@ AnyLoad = (
     | SpringAtJoint
     | DamperBetweenPoints
     | DamperAtJoint
+    | BushingBetweenLinks
     | FrictionAtJoint
 )
-_WORDS = ("gravity", "force", "torque", "spring", "damper", "friction")
+_WORDS = ("gravity", "force", "torque", "spring", "damper", "bushing", "friction")
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:
     word = mapping.get("type")
     if word not in _WORDS:
         return None
-    at_joint = "joint" in mapping and word not in ("gravity", "friction")
+    at_joint = "joint" in mapping and word not in ("gravity", "bushing", "friction")
     return f"({word} at joint)" if at_joint else f"({word})"
 
 

@@ -31,6 +31,7 @@ from mechkin_cli.schema.links_joints import (
     AnyJoint,
     BodyWithMass,
     DirectionOrPerLink,
+    InertiaAxes,
     JointBase,
     Link,
     LinkInertia,
@@ -44,6 +45,10 @@ from mechkin_cli.schema.links_joints import (
 from mechkin_cli.schema.loads import (
     AnyLoad,
     Axes,
+    BushingBetweenLinks,
+    BushingDamping,
+    BushingFree,
+    BushingStiffness,
     DamperAtJoint,
     DamperBetweenPoints,
     ForceOnJoint,
@@ -64,13 +69,16 @@ from mechkin_cli.schema.loads import (
 )
 from mechkin_cli.schema.scalars import (
     Acceleration,
+    Angle,
     AnyDimension,
+    Damping,
     DirectionOfLink,
     Inertia,
     Length,
     Name,
     NamedOr,
     PointOfLink,
+    Stiffness,
 )
 
 PLANE_JOINT_LETTERS: Final = ("R", "P", "Ps", "W")
@@ -261,6 +269,58 @@ class PlaneTorque(InRuns):
     """The torque, positive counter-clockwise."""
 
 
+class PlaneBushingStiffness(Section):
+    """The stiffness of a bushing along its axes and about the normal."""
+
+    x: Stiffness = "0"
+    """Force per length along x."""
+    y: Stiffness = "0"
+    """Force per length along y."""
+    rz: Stiffness = "0"
+    """Moment per angle (bare numbers: per rad)."""
+
+
+class PlaneBushingDamping(Section):
+    """The damping of a bushing along its axes and about the normal."""
+
+    x: Damping = "0"
+    """Force per speed along x."""
+    y: Damping = "0"
+    """Force per speed along y."""
+    rz: Damping = "0"
+    """Moment per angular rate (bare numbers: per rad/s)."""
+
+
+class PlaneBushingFree(Section):
+    """Where a bushing has no force: the deflection from the drawing."""
+
+    x: Length = "0"
+    """Shift along x."""
+    y: Length = "0"
+    """Shift along y."""
+    rz: Angle = "0"
+    """Turn."""
+
+
+class PlaneBushing(PlanePointJoint, InRuns):
+    """A spring between two links in all directions of the plane: a rubber mount, a flexure."""
+
+    advice: ClassVar[dict[str, str]] = {"axes": "write x: [1, 0], the direction of its axis x"}
+
+    type: Literal["bushing"]
+    name: Name | None = None
+    """Its name, by which columns read its force; left out, it has no quantities."""
+    stiffness: PlaneBushingStiffness
+    """Force and moment per deflection: {x, y, rz}."""
+    damping: PlaneBushingDamping | None = None
+    """Force and moment per velocity: {x, y, rz}; left out, it does not damp."""
+    x: PlaneDirection | None = None
+    """Its axis x in the home drawing, which turns with the first link; left out, that of the
+    ground."""
+    free: PlaneBushingFree | None = None
+    """The deflection without force; left out, it has no force as drawn."""
+
+
 class PlaneFriction(FrictionLoad):
     """Coulomb friction of a joint R, P or Ps, from the joint's own reaction. A pin rubs along its
     slot."""
@@ -289,6 +349,7 @@ PlaneLoad = Annotated[
     | SpringAtJoint
     | DamperBetweenPoints
     | DamperAtJoint
+    | PlaneBushing
     | PlaneFriction,
     form_of_load,
 ]
@@ -453,7 +514,25 @@ def _load(load: object) -> AnyLoad:
     if isinstance(load, PlaneTorque):
         of_torque = {"link": load.link, "torque": ("0", "0", load.torque)}
         return section_of(TorqueOnLink, type=load.type, runs=load.runs, **of_torque)
+    if isinstance(load, PlaneBushing):
+        return _bushing(load)
     if isinstance(load, PlaneFriction):
         common = {field.name: getattr(load, field.name) for field in fields_of(type(load)).values()}
         return section_of(FrictionAtJoint, **common)
     return load  # type: ignore[return-value]
+
+
+def _bushing(load: PlaneBushing) -> BushingBetweenLinks:
+    """What the plane holds has no stiffness."""
+    axes = None
+    if load.x is not None:
+        x, y = load.x
+        axes = section_of(InertiaAxes, x=_flat(load.x), y=(f"-({y})", x, "0"))
+    forms = {"stiffness": BushingStiffness, "damping": BushingDamping, "free": BushingFree}
+    of_axes = {
+        key: None if part is None else section_of(form, x=part.x, y=part.y, rz=part.rz)
+        for key, form in forms.items()
+        for part in [getattr(load, key)]
+    }
+    same = {key: getattr(load, key) for key in ("type", "name", "links", "runs")}
+    return section_of(BushingBetweenLinks, **same, point=_each(load.point), axes=axes, **of_axes)

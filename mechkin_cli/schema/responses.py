@@ -5,7 +5,7 @@ What is free follows from loads and efforts; `motion.inputs` belongs to the swee
 here.
 """
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
@@ -243,3 +243,16 @@ class Equilibrium(Section):
         if self.starts is not None and not self.window:
             text = "starts are counted in a window, and there is none"
             raise refuse("starts-without-window", text, "remove starts, or add window", "starts")
+
+
+EXAMPLES_BY_KEY: Final[dict[str, Any]] = {
+    "equilibria": {"ride": {"near": {"A.theta": 20}}},
+    "rest": ["B.s"],
+    "starts": 200,
+    "window": {"A.theta": {"from": -180, "to": 180}},
+}
+EXAMPLES_OF_EQUILIBRIA: Final[dict[tuple[str, str], Any]] = {
+    ("Equilibrium", "time"): "2 s",
+    ("Equilibrium", "driven"): {"A.theta": {"at": "30 deg"}},
+}
+"""Examples of what is written about rest, by key and by section, for editors."""

@@ -92,6 +92,11 @@ def _definitions(data: object) -> Iterator[tuple[str, str, tuple[str | int, ...]
             for index, row in enumerate(content):
                 if isinstance(row, dict):
                     yield from _chain_definitions(row, index, sections.get("links"))
+        elif section == "loads" and isinstance(content, list):
+            for index, load in enumerate(content):
+                name = load.get("name") if isinstance(load, dict) else None
+                if isinstance(name, str):
+                    yield section, name, (section, index, "name")
 
 
 def _chain_definitions(

@@ -22,7 +22,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.plan import Demand
+from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, Chart, RowInputs, continuous_angle
 
@@ -200,6 +200,20 @@ class Forces:
             lambda rates: self.at(place, np.zeros_like(rates), rates), self.freedoms
         )
 
+    def told(
+        self,
+        place: FreePlace,
+        readout: Readout,
+        u: Floats,
+        rates: Floats,
+        accelerations: Floats,
+        driven: DrivenAt | None = None,
+    ) -> Batch:
+        """Outputs at places of the chart, with arguments as those of `at`; no more is computed."""
+        demand = demand_of(self.session.problem.mechanism, readout.wanted)
+        at = driven or self.driven
+        return self._run(at, place, u, rates, accelerations, readout, demand)
+
     def _run(
         self,
         driven: DrivenAt,
@@ -208,8 +222,10 @@ class Forces:
         rates: Floats,
         seconds: Floats,
         readout: Readout | None = None,
+        demand: Demand | None = None,
     ) -> Batch:
-        """Closes places of the chart with a motion along it, and balances the forces."""
+        """Closes places of the chart with a motion along it, and balances the forces, unless
+        something else is demanded."""
         count, session = u.shape[1], self.session
 
         def of_rows(array: Floats) -> Floats:
@@ -236,6 +252,8 @@ class Forces:
             state,
             u,
         )
+        if demand is not None:
+            return session.run(rows, Ask(demand, readout))
         return session.run(rows, Ask(_BALANCED, readout, derivatives=True, balance=True))
 
     def _turned(self, place: FreePlace, batch: Batch) -> Floats:

@@ -9,6 +9,7 @@ stands beside it with its reason (`kernel/core/`):
 
 * `condition.hpp`: the condition up to which the estimate stands, 1e6, and how far its factors may
   be off, 5e-4; beyond, the condition is computed to rounding;
+* `bushings.hpp`: turns below which series take over, and their terms;
 * `linear.hpp`: cosines of Jacobi rotations, 1e-15 and 1e-8, and at most 30 sweeps;
 * `judge.cpp`, `arc.cpp`, `passage.cpp`, `stretch.cpp`, `branch_point.cpp`, `tracker.cpp`: what a
   walk by arclength takes for a fold, a narrow place or a branch point, and what rounding leaves;
@@ -35,3 +36,4 @@ from mechkin_cli.tolerances.mobility import *
 from mechkin_cli.tolerances.reading import *
 from mechkin_cli.tolerances.results import *
 from mechkin_cli.tolerances.statics import *
+from mechkin_cli.tolerances.vibration import *

@@ -33,6 +33,11 @@ LARGEST_CONVERSION: Final = 1e290
 """Conversion factor beyond which (or below whose inverse) products with numbers of a file are no
 doubles any more."""
 
+INDEFINITE_BUSHING: Final = 1e-9
+"""Least eigenvalue of a bushing's matrix, scaled to a diagonal of ones, down to minus which it is
+taken for semidefinite: measured matrices are printed with nine digits at most, and a direction that
+is meant to be free comes out as zero to those."""
+
 # --- rows and tables -----------------------------------------------------------------------------
 
 OVERSHOOT: Final = 0.01

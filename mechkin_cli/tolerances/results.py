@@ -43,9 +43,10 @@ DEAD_CENTRE_LOST: Final = 0.1
 """Part of a rate by which it is wrong, as double-double tells, from which on a row stands at a dead
 centre as nearly as a double can say: no digit is left. At a dead centre itself the part is 1."""
 
-PART_ROWS: Final = 1 << 16
-"""Rows of a part of a long run: its states, inputs and a few columns take some tens of megabytes,
-and what is done once for each part is small beside its rows."""
+PART_ROWS: Final = 1 << 15
+"""Rows of a part of a long run: its states, inputs and a few columns take thirty megabytes, of
+which two parts are held while one is written, and what is done once for each part is small beside
+its rows."""
 
 PART_NUMBERS: Final = 1 << 21
 """Numbers of states and turns of all rows of a part: 16 MB."""

@@ -18,6 +18,7 @@ import numpy as np
 
 from mechkin_cli.mechanism import (
     Attached,
+    Bushing,
     Damper,
     JointLoad,
     LinkLoad,
@@ -213,6 +214,11 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
                 # what pulls of one belt do to its carrier is together nothing
                 if not (is_pull and end.link in carriers):
                     yield f"{word} on {end.link}", KINDS[0], end, vector
+        elif isinstance(load, Bushing) and load.name and not load.damps and load.links[1] in links:
+            place = Attached(load.links[1], load.frames[1].o)
+            for kind in KINDS:
+                name = f"{load.name}.{kind}"
+                yield name, kind, place, _in_space(analysis, name)
 
 
 def _amount(analysis: Readable, amount: Amount) -> Floats:

@@ -30,6 +30,7 @@ ROOMS = {
     "derived",
     "balances",
     "statics",
+    "vibration",
     "proofs",
     "sweep",
     "response",
@@ -77,6 +78,7 @@ FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
     ("response/integration.py", "np.linalg"): "eigenvectors for a message",
     ("building/joints.py", "np.linalg"): "eigenvalues for a warning",
+    ("building/bushings.py", "np.linalg"): "an eigenvalue for a message",
     (
         "building/spacing.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",
@@ -84,7 +86,7 @@ ACCEPTED = {
     ("tape/identities.py", "pow(rest, -1, whole)"): "whole numbers",
     ("tape/identities.py", "prime ** (count // 2)"): "whole numbers",
     ("response/result.py", "TIME ** order"): FRACTIONS,
-    ("response/runs.py", "TIME ** order"): FRACTIONS,
+    ("response/rows.py", "TIME ** order"): FRACTIONS,
     ("building/fields.py", "TIME ** order"): FRACTIONS,
     ("session/double_double.py", "TIME ** order"): FRACTIONS,
     ("building/law_reading.py", "self.over.dimension ** order"): FRACTIONS,

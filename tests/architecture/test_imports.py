@@ -55,6 +55,7 @@ ORDER = [
     "response",
     "statics",
     "vibration",
+    "vibration",
     "balances",
     "errors",
     "cams",

@@ -41,7 +41,7 @@ def test_the_last_part_may_have_few_rows(
 ) -> None:
     """Files and what is printed are those of the whole run, which `md` needs."""
     path = tmp_path / "f.yaml"
-    path.write_text(FOUR_BAR.format(count=tolerances.PART_ROWS + 1 + more))
+    path.write_text(FOUR_BAR.format(count=tolerances.LONG_RUN + more))
     printed = []
     for name, formats in (("streamed", "csv"), ("whole", "csv,md")):
         run(monkeypatch, str(path), "--format", formats, "--out", str(tmp_path / name))

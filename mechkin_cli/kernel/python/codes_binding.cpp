@@ -30,7 +30,9 @@ void bind_plan_codes(nb::module_& m) {
       .value("SPRING", LOAD_SPRING)
       .value("DAMPER", LOAD_DAMPER)
       .value("COORDINATE_SPRING", LOAD_COORDINATE_SPRING)
-      .value("COORDINATE_DAMPER", LOAD_COORDINATE_DAMPER);
+      .value("COORDINATE_DAMPER", LOAD_COORDINATE_DAMPER)
+      .value("BUSHING", LOAD_BUSHING)
+      .value("BUSHING_DAMPER", LOAD_BUSHING_DAMPER);
   nb::enum_<OutputCode>(m, "OutputCode", nb::is_arithmetic(), "Kinds of outputs.")
       .value("STATE", OUT_STATE)
       .value("RATE", OUT_RATE)
@@ -69,7 +71,11 @@ void bind_plan_codes(nb::module_& m) {
       .value("SELF_LOCKING", OUT_SELF_LOCKING)
       .value("MULTIPLIER", OUT_MULTIPLIER)
       .value("MESH_FORCE", OUT_MESH_FORCE)
-      .value("TENSION", OUT_TENSION);
+      .value("TENSION", OUT_TENSION)
+      .value("BUSHING_FORCE", OUT_BUSHING_FORCE)
+      .value("BUSHING_MOMENT", OUT_BUSHING_MOMENT)
+      .value("BUSHING_SHIFT", OUT_BUSHING_SHIFT)
+      .value("BUSHING_TURN", OUT_BUSHING_TURN);
   nb::enum_<ReadCode>(m, "ReadCode", nb::is_arithmetic(), "What programs of quantities read.")
       .value("OUTPUT", READ_OUTPUT)
       .value("ANGLE", READ_ANGLE)

@@ -119,7 +119,7 @@ void search(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.rows = given.rows();
   r.block = (int)given.integer("block", 0, p.blocks - 1, -1);
   if (r.block < 0) throw nb::type_error("block: missing");
-  if (p.block[r.block].band_entries) throw nb::value_error("block: the loops of a free motion are not searched");
+  if (p.block[r.block].charts) throw nb::value_error("block: the loops of a free motion are not searched");
   r.iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
   r.accept = given.limits("tests", 1)[0];
   const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));
@@ -167,6 +167,8 @@ void bind_builder(nb::module_& m) {
       .def("set_gravity", raising(&PlanBuilder::set_gravity), "g"_a)
       .def("add_load", raising(&PlanBuilder::add_load), "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a,
            "other_point"_a, "vector"_a, "varying"_a = false)
+      .def("add_bushing", raising(&PlanBuilder::add_bushing), "damps"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
+           "matrix"_a, "free"_a)
       .def("set_load_program", raising(&PlanBuilder::set_load_program), "reads"_a, "numbers"_a, "curves"_a, "knots"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
       .def("set_driven", raising(&PlanBuilder::set_driven), "inputs"_a)
       .def("add_actuator", raising(&PlanBuilder::add_actuator), "axis"_a, "reference"_a, "freedom"_a)

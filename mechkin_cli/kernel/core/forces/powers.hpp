@@ -59,6 +59,8 @@ inline Pack potential_energy(const Plan& p, const Workspace& w, const RowValue& 
     } else if (l.type == LOAD_COORDINATE_SPRING) {
       joint_coordinate(p, w, l, false, &value, &rate);
       energy += spring_energy(l, row_value.turned(l.turn, l.other < 0, value) - Pack(l.vector[1]));
+    } else if (l.type == LOAD_BUSHING) {
+      energy += bushing_energy(p, w, l);
     }
   }
   return energy;
@@ -88,6 +90,17 @@ inline void add_power_between_points(Powers& powers, const Workspace& w, const L
   powers.add(-tension * along, apart);
 }
 
+// Of a bushing: its forces by the rates of its deflection, or by the velocities that a damper goes by.
+inline void add_bushing_power(Powers& powers, const Plan& p, const Workspace& w, const Load& l) {
+  const Bushing& b = p.bushing[l.freedom];
+  const Deflection d = deflection(p, w, l);
+  const Six moves = deflection_velocity(w, l, d);
+  const bool damps = l.type == LOAD_BUSHING_DAMPER;
+  const Six by = times_matrix(b, damps ? moves : stretch(b, d));
+  powers.add(-by.slides, moves.slides);
+  powers.add(-by.turns, damps ? moves.turns : d.turn_rate(moves.turns));
+}
+
 template <class RowValue>
 inline void add_load_power(Powers& powers, const Plan& p, const Workspace& w, const Load& l,
                            const RowValue& row_value) {
@@ -114,6 +127,8 @@ inline void add_load_power(Powers& powers, const Plan& p, const Workspace& w, co
     case LOAD_COORDINATE_DAMPER:
       joint_coordinate(p, w, l, true, &value, &rate);
       return powers.add(-(Pack(l.vector[0]) * rate) * rate);
+    case LOAD_BUSHING:
+    case LOAD_BUSHING_DAMPER: return add_bushing_power(powers, p, w, l);
   }
 }
 

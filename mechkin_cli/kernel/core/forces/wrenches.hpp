@@ -2,7 +2,7 @@
 #pragma once
 
 #include "arithmetic/lost_direction.hpp"
-#include "rows/moving.hpp"
+#include "forces/bushings.hpp"
 
 namespace {
 
@@ -149,6 +149,13 @@ inline void apply_between_points(Balance& balance, const Load& l) {
   balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
 }
 
+inline void apply_bushing(Balance& balance, const Load& l) {
+  if (l.type == LOAD_BUSHING_DAMPER && !balance.moving) return;
+  const Wrench on_second = bushing_wrench(balance.p, balance.w, l);
+  balance.apply(l.other, on_second);
+  balance.apply(l.link, Pack(-1.0) * on_second);
+}
+
 MECHKIN_INLINE Vec3 load_vector(const Workspace& w, const Load& l) {
   if (l.varying < 0) return constant(l.vector);
   return {w.load[l.varying], w.load[l.varying + 1], w.load[l.varying + 2]};
@@ -184,6 +191,8 @@ inline void apply_load(Balance& balance, const Load& l, const RowValue& row_valu
       if (!balance.moving) return;
       joint_coordinate(p, w, l, true, &value, &rate);
       return apply_along_coordinate(balance, l.link, -(Pack(l.vector[0]) * rate));
+    case LOAD_BUSHING:
+    case LOAD_BUSHING_DAMPER: return apply_bushing(balance, l);
   }
 }
 

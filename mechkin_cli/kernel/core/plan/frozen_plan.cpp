@@ -41,6 +41,7 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_COLUMN_WEIGHT, p.column_weight, p.columns);
   visit(ARRAY_INERTIA, p.inertia, p.links);
   visit(ARRAY_LOAD, p.load, p.loads);
+  visit(ARRAY_BUSHING, p.bushing, p.bushings);
   visit(ARRAY_ACTUATOR, p.actuator, p.actuators);
   visit(ARRAY_INPUT_CONSTRAINT, p.input_constraint, p.input_constraints);
   visit(ARRAY_FRICTION, p.friction, p.frictions);

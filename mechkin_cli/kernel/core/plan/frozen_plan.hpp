@@ -16,6 +16,7 @@
 //   set_inertia        mass, centre (3), tensor (6: xx yy zz xy xz yz)
 //   set_gravity        g (3)
 //   add_load           point (3), other_point (3), vector (3)
+//   add_bushing        on_first (12), on_second (12), matrix (21), free (6)
 //   set_load_program   of each read data (3) and factor, then knots (x, y, b, c, d of each), then its own constants
 //   add_friction       axis (3), radius, pitch, at_rest, sliding, speed
 //   add_contact        weight, share, tilt, roll, direction (3)
@@ -57,6 +58,7 @@ enum PlanArray : int {
   ARRAY_COLUMN_WEIGHT,
   ARRAY_INERTIA,
   ARRAY_LOAD,
+  ARRAY_BUSHING,
   ARRAY_ACTUATOR,
   ARRAY_INPUT_CONSTRAINT,
   ARRAY_FRICTION,

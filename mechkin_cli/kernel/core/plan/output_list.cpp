@@ -20,7 +20,8 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   REQUIRE(r.order >= 0 && r.order <= 3, "outputs go to third order");
   const bool orders = r.type == OUT_CLOSING || r.type == OUT_POINT;
   REQUIRE(orders || r.order == 0, "only closing coordinates and points have derivatives of an order");
-  REQUIRE(r.type == OUT_CLOSING || r.type == OUT_MULTIPLIER || r.freedom == 0, "only closing coordinates have a freedom");
+  const bool freedoms = r.type == OUT_CLOSING || r.type == OUT_MULTIPLIER || (r.type >= OUT_BUSHING_FORCE && r.type <= OUT_BUSHING_MOMENT);
+  REQUIRE(freedoms || r.freedom == 0, "only closing coordinates have a freedom");
   REQUIRE(all_finite(r.data.data(), 3) && all_finite(&r.factor, 1), "an output's numbers must be finite");
   switch (r.type) {
     case OUT_STATE: return check_index(r.index, 0, p.states, "state");
@@ -59,6 +60,15 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
       return {};
     case OUT_EFFORT: return check_index(r.index, 0, p.inputs, "input");
     case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
+    case OUT_BUSHING_FORCE:
+    case OUT_BUSHING_MOMENT:
+    case OUT_BUSHING_SHIFT:
+    case OUT_BUSHING_TURN:
+      CHECK(check_index(r.index, 0, p.loads, "load"));
+      REQUIRE(p.load[r.index].type >= LOAD_BUSHING, "an output of a bushing of a load that is none");
+      REQUIRE(r.freedom == 0 || (r.freedom == 1 && r.index + 1 < p.loads && p.load[r.index + 1].type == LOAD_BUSHING_DAMPER),
+              "an output of a bushing's damper, which has none");
+      return {};
     case OUT_MOTOR: return check_index(r.index, 0, p.actuators ? p.actuators : p.inputs, "motor");
     case OUT_ACTUATION:
       REQUIRE(p.actuators && r.index == 0, "an output of actuators, of which there are none");
@@ -74,7 +84,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_TENSION; }
+bool is_output(int type) { return type >= 0 && type <= OUT_BUSHING_TURN; }
 
 int output_width(int type) {
   switch (type) {
@@ -113,6 +123,8 @@ unsigned output_demand(int type, int order) {
     case OUT_SELF_LOCKING: return DEMAND_FORCES | to_order[2];
     case OUT_JERK: return to_order[3];
     case OUT_RATE:
+    case OUT_BUSHING_FORCE:
+    case OUT_BUSHING_MOMENT:
     case OUT_KINETIC_ENERGY:
     case OUT_OMEGA: return to_order[1];
     case OUT_LOAD_POWER: return to_order[1] | DEMAND_FORCES;

@@ -108,6 +108,9 @@ struct Block {
   bool placeless;                // as many relations between coordinates as unknowns, which do not go by places
   bool is_explicit;              // one such whose unknown is no function's argument, so that it gives the unknown
   int band_entries;              // of its Jacobian as a band, with a border of charts (arithmetic/band.hpp); 0: a full matrix
+  long jacobian_at, swap_at;     // where its matrix and the exchanges of its rows begin among those of all blocks
+  int equation_at;               // its first equation among those of all blocks
+  long full_at;                  // where its matrix begins if all are full ones, as Request::jacobian has them
 };
 
 template <class Number>
@@ -127,19 +130,29 @@ enum LoadCode : int {
   LOAD_SPRING = 5,      // between two points; data: stiffness, free length, preload
   LOAD_DAMPER = 6,      // between two points; data: damping
   LOAD_COORDINATE_SPRING = 7,
-  LOAD_COORDINATE_DAMPER = 8
+  LOAD_COORDINATE_DAMPER = 8,
+  LOAD_BUSHING = 9,         // between two frames, in all six directions (forces/bushings.hpp)
+  LOAD_BUSHING_DAMPER = 10
 };
 
 template <class Number>
 struct LoadOf {
   int type;
   int link, other;    // LOAD_COORDINATE*: link = axis, other = joint reference of the coordinate
-  int freedom;        // of the coordinate in that joint
+  int freedom;        // of the coordinate in that joint; LOAD_BUSHING*: into Plan::bushing
   Number point[3], other_point[3];
   Number vector[3];   // force, torque, or the data of springs and dampers
   int varying;        // first of its values among the outputs of Plan::law instead of `vector`, -1: constant
   int turn;           // LOAD_COORDINATE_SPRING on an angle: its slot in Request::turned; of an input -2 - its number in
                       // Request::whole; -1: turns do not matter
+};
+
+// Frames that coincide in the drawing, unless it is not assembled; the upper half of a symmetric matrix, row after row, of
+// forces and moments per deflection or its rate; where a spring has no force. In length units.
+template <class Number>
+struct BushingOf {
+  FrameOf<Number> on_first, on_second;
+  Number matrix[21], free[6];
 };
 
 // What a run writes, in the order of its slots.
@@ -222,7 +235,7 @@ struct Actuator {
 // What plans of one structure share.
 struct PlanShape {
   int links, states, columns, closings, hung_bodies, blocks, inputs, loads, load_values;
-  int places, axes, drives, frees, loop_entries, terms, order_count, unknowns, size_points, frictions, contacts;
+  int places, axes, drives, frees, loop_entries, terms, order_count, unknowns, size_points, frictions, contacts, bushings;
   int largest_block;  // rows
   int charts;         // coordinates of the one block's chart, whose unknowns they determine; 0: inputs do
   int driven;         // inputs, the first ones, that motors or actuators answer for; the others are held
@@ -259,6 +272,7 @@ struct PlanOf : PlanShape {
   const Number* column_weight;  // scaled-block weight of a column: size / length unit for slides, 1 for angles
   const LinkInertiaOf<Number>* inertia;
   const LoadOf<Number>* load;
+  const BushingOf<Number>* bushing;
   ProgramOf<Number> law;     // the values of loads that vary
   const FrictionOf<Number>* friction;
   const ContactOf<Number>* contact;
@@ -278,6 +292,7 @@ using HungBody = HungBodyOf<double>;
 using Term = TermOf<double>;
 using LinkInertia = LinkInertiaOf<double>;
 using Load = LoadOf<double>;
+using Bushing = BushingOf<double>;
 using JointPlace = JointPlaceOf<double>;
 using FreeMotion = FreeMotionOf<double>;
 using CoordinateAxis = CoordinateAxisOf<double>;

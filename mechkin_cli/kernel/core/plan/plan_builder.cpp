@@ -417,6 +417,25 @@ Refusal PlanBuilder::add_load(int type, int link, int other, int freedom, const 
   return {};
 }
 
+Refusal PlanBuilder::add_bushing(bool damps, int first, int second, const FrameData& on_first, const FrameData& on_second,
+                                 const std::array<double, 21>& matrix, const std::array<double, 6>& free) {
+  CHECK(open());
+  CHECK(check_link(first));
+  CHECK(check_link(second));
+  CHECK(check_finite(on_first, on_second, matrix, free));
+  const std::size_t at = bushing_.size() * sizeof(Bushing);
+  load_.push_back({damps ? LOAD_BUSHING_DAMPER : LOAD_BUSHING, first, second, (int)bushing_.size(), {}, {}, {}, -1, -1});
+  Bushing b = {frame(on_first), frame(on_second), {}, {}};
+  std::memcpy(b.matrix, matrix.data(), sizeof b.matrix);
+  std::memcpy(b.free, free.data(), sizeof b.free);
+  bushing_.push_back(b);
+  number(ARRAY_BUSHING, at + offsetof(Bushing, on_first), 12);
+  number(ARRAY_BUSHING, at + offsetof(Bushing, on_second), 12);
+  number(ARRAY_BUSHING, at + offsetof(Bushing, matrix), 21);
+  number(ARRAY_BUSHING, at + offsetof(Bushing, free), 6);
+  return {};
+}
+
 Refusal PlanBuilder::set_driven(int inputs) {
   CHECK(open());
   REQUIRE(!driven_set_, "the driven inputs are said once");

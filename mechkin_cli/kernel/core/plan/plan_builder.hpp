@@ -69,6 +69,9 @@ class PlanBuilder {
   // A varying load takes its value from the next outputs of the load program: one along a coordinate, else three.
   Refusal add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
                 const Triple& vector, bool varying);
+  // The next load: a spring or a damper between two frames, see Bushing; ground is -1.
+  Refusal add_bushing(bool damps, int first, int second, const FrameData& on_first, const FrameData& on_second,
+                      const std::array<double, 21>& matrix, const std::array<double, 6>& free);
   // The values of the loads that vary: kind, then type, index, freedom and order of what is read, and its data (3) and
   // factor; curves, and knots as of functions; then the instructions, as in ProgramRecord.
   Refusal set_load_program(const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
@@ -117,6 +120,7 @@ class PlanBuilder {
   void find_turns();
   void find_relations();
   void find_band(Block* block);
+  void find_bands();
   Plan arrays() const;
 
   Plan plan_{};
@@ -140,6 +144,7 @@ class PlanBuilder {
   std::vector<double> column_weight_;
   std::vector<LinkInertia> inertia_;
   std::vector<Load> load_;
+  std::vector<Bushing> bushing_;
   std::vector<Actuator> actuator_;
   std::vector<InputConstraint> input_constraint_;
   std::vector<Friction> friction_;

@@ -26,6 +26,7 @@ using HungBody = HungBodyOf<PlanNumber>;
 using Term = TermOf<PlanNumber>;
 using LinkInertia = LinkInertiaOf<PlanNumber>;
 using Load = LoadOf<PlanNumber>;
+using Bushing = BushingOf<PlanNumber>;
 using JointPlace = JointPlaceOf<PlanNumber>;
 using FreeMotion = FreeMotionOf<PlanNumber>;
 using CoordinateAxis = CoordinateAxisOf<PlanNumber>;
@@ -128,6 +129,7 @@ inline void widen_masses_and_loads(const LanePlan& first, const Constants& lanes
   PlanNumber* const weight = room.take<PlanNumber>(first.columns);
   LinkInertia* const inertia = room.take<LinkInertia>(first.links);
   Load* const load = room.take<Load>(first.loads);
+  Bushing* const bushing = room.take<Bushing>(first.bushings);
   if (!room.memory) return;
   lanes.numbers(weight, first.columns, [&](const LanePlan& p) { return p.column_weight; });
   for (int k = 0; k < first.links; ++k) {
@@ -143,7 +145,13 @@ inline void widen_masses_and_loads(const LanePlan& first, const Constants& lanes
     lanes.numbers(load[l].other_point, 3, [&](const LanePlan& p) { return p.load[l].other_point; });
     lanes.numbers(load[l].vector, 3, [&](const LanePlan& p) { return p.load[l].vector; });
   }
-  w->column_weight = weight, w->inertia = inertia, w->load = load;
+  for (int b = 0; b < first.bushings; ++b) {
+    lanes.frame(&bushing[b].on_first, [&](const LanePlan& p) -> const auto& { return p.bushing[b].on_first; });
+    lanes.frame(&bushing[b].on_second, [&](const LanePlan& p) -> const auto& { return p.bushing[b].on_second; });
+    lanes.numbers(bushing[b].matrix, 21, [&](const LanePlan& p) { return p.bushing[b].matrix; });
+    lanes.numbers(bushing[b].free, 6, [&](const LanePlan& p) { return p.bushing[b].free; });
+  }
+  w->column_weight = weight, w->inertia = inertia, w->load = load, w->bushing = bushing;
 }
 
 template <class Constants>

@@ -41,7 +41,11 @@ enum OutputCode : int {
   OUT_SELF_LOCKING = 34,      // 1 where a drive that would brake without friction has to push
   OUT_MULTIPLIER = 35,        // index: closing joint that is a relation; freedom: one of its terms, along which it acts
   OUT_MESH_FORCE = 36,        // index: closing joint that is a relation and acts by a force
-  OUT_TENSION = 37            // index: closing joint that is a relation; data: per multiplier, its magnitude, and beside
+  OUT_TENSION = 37,           // index: closing joint that is a relation; data: per multiplier, its magnitude, and beside
+  OUT_BUSHING_FORCE = 38,     // index: load; freedom 1: and its damper, the next load; on the second link
+  OUT_BUSHING_MOMENT = 39,    // about the second frame's origin
+  OUT_BUSHING_SHIFT = 40,     // its deflection, in the axes of the first frame
+  OUT_BUSHING_TURN = 41
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "forces/energy.hpp"
-#include "response/regular_band.hpp"
+#include "rows/regular_band.hpp"
 
 namespace {
 
@@ -152,8 +152,8 @@ inline void powers_of_loads(const Plan& p, const Workspace& w, const ReducedMoti
   Powers put = {Pack(0.0), Pack(0.0)}, taken = {Pack(0.0), Pack(0.0)};
   for (int l = 0; l < p.loads; ++l) {
     const int type = p.load[l].type;
-    if (type == LOAD_SPRING || type == LOAD_COORDINATE_SPRING) continue;
-    const bool damper = type == LOAD_DAMPER || type == LOAD_COORDINATE_DAMPER;
+    if (type == LOAD_SPRING || type == LOAD_COORDINATE_SPRING || type == LOAD_BUSHING) continue;
+    const bool damper = type == LOAD_DAMPER || type == LOAD_COORDINATE_DAMPER || type == LOAD_BUSHING_DAMPER;
     add_load_power(damper ? taken : put, p, w, p.load[l], row_value);
   }
   for (int i = 0; i < p.inputs; ++i) {

@@ -98,6 +98,20 @@ inline Pack output_tension(const Workspace& w, const OutputOf<Number>& o) {
   return Pack(o.data[0]) * multiplier + Pack(o.data[1]) * abs(multiplier) + Pack(o.data[2]);
 }
 
+template <class Number>
+inline Vec3 output_bushing(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
+  const Load& l = p.load[o.index];
+  const Deflection d = deflection(p, w, l);
+  if (o.type == OUT_BUSHING_SHIFT) return d.shift;
+  if (o.type == OUT_BUSHING_TURN) return d.turn;
+  Six by = bushing_force(p, w, l, d);
+  if (o.freedom) {
+    const Six damps = bushing_force(p, w, p.load[o.index + 1], d);
+    by = {by.slides + damps.slides, by.turns + damps.turns};
+  }
+  return o.type == OUT_BUSHING_FORCE ? by.slides : by.turns;
+}
+
 // The value of a quantity, one pack or three; returns how many. `balance` for those that need forces, `row_value` as in
 // apply_load.
 template <class Number, class RowValue>
@@ -144,6 +158,10 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     case OUT_KINETIC_ENERGY: return one(factor * kinetic_energy(p, w));
     case OUT_POTENTIAL_ENERGY: return one(factor * potential_energy(p, w, row_value));
     case OUT_LOAD_POWER: return one(factor * load_power(p, w, o.index, row_value));
+    case OUT_BUSHING_FORCE:
+    case OUT_BUSHING_MOMENT:
+    case OUT_BUSHING_SHIFT:
+    case OUT_BUSHING_TURN: return three(factor * output_bushing(p, w, o));
     case OUT_NORMAL_LOAD: return one(factor * w.rubbing.normal[o.index]);
     case OUT_FRICTION_FORCE:
     case OUT_FRICTION_MOMENT: return three(factor * output_friction(w, o.type, o.index));

@@ -161,6 +161,7 @@ constexpr Verb VERBS[] = {
     {"set_inertia", said<&PlanBuilder::set_inertia>},
     {"set_gravity", said<&PlanBuilder::set_gravity>},
     {"add_load", said<&PlanBuilder::add_load>},
+    {"add_bushing", said<&PlanBuilder::add_bushing>},
     {"set_load_program", said<&PlanBuilder::set_load_program>},
     {"set_driven", said<&PlanBuilder::set_driven>},
     {"add_actuator", said<&PlanBuilder::add_actuator>},

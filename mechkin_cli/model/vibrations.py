@@ -1,0 +1,69 @@
+"""Small motions of a model about a row of one of its runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Protocol
+
+from mechkin_cli.arguments import a_whole_number, texts
+from mechkin_cli.vibration import Vibration, freed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mechkin_cli.analysis import Analysis, Design
+    from mechkin_cli.arguments import Setting
+
+
+class Moving(Protocol):
+    """What is asked of a model."""
+
+    @property
+    def design(self) -> Design:
+        """The checked file with the values of its parameters."""
+        ...
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """The names of its runs."""
+        ...
+
+    def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
+        """All runs, or one."""
+        ...
+
+    def with_parameters(self, parameters: Mapping[str, Setting]) -> Moving:
+        """The model with other values of some parameters."""
+        ...
+
+
+def vibration(
+    model: Moving,
+    run: str | None,
+    row: int,
+    coordinates: Sequence[str] | None,
+    held: Sequence[str],
+) -> Vibration:
+    """Arguments and errors are those of `Model.vibration`."""
+    held = texts("held", held, '["A.theta"]')
+    a_whole_number("row", row, "", 0)
+    if coordinates is not None:
+        coordinates = texts("coordinates", coordinates, '["A.theta"]')
+    name = run or _first_run(model)
+    (analysis,) = model.analyses(name)
+    units, parameters = analysis.result.units, analysis.result.problem.parameters
+
+    def again(parameter: str, factor: float) -> Vibration:
+        value = parameters[parameter]
+        own = units.from_si(factor * float(value.value), value.dimension)  # type: ignore[arg-type]
+        other = model.with_parameters({parameter: float(own)})
+        return vibration(other, name, row, coordinates, held)
+
+    return Vibration(freed(analysis.result, row, coordinates, held), again)
+
+
+def _first_run(model: Moving) -> str:
+    """The first equilibria of the file, else its first run."""
+    responses = model.design.at_responses.problem.responses
+    resting = (run for run, one in responses.items() if getattr(one, "search", None) is not None)
+    return next(resting, model.runs[0])

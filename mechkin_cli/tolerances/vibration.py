@@ -1,0 +1,21 @@
+"""Limits of small motions."""
+
+from __future__ import annotations
+
+from typing import Final
+
+SMALL_IMBALANCE: Final = 1e-9
+"""Effort along a coordinate, in parts of the largest stiffness (per rad or m), below which a row is
+said to be in balance: equilibria are found to 1e-12 of the largest load."""
+
+SYMMETRIC_STIFFNESS: Final = 1e-9
+"""Part of a matrix's largest entry, scaled to the inertia, by which it may be unsymmetric or damp
+and still count as symmetric, or as no damping: differences of forces leave up to 1e-11."""
+
+RIGID_MOTION: Final = 1e-9
+"""Square of an angular frequency, in parts of the largest, below which a motion has no stiffness:
+differences of forces leave up to 1e-12 of the largest stiffness."""
+
+PARAMETER_STEP: Final = 1e-3
+"""Step of a parameter, in parts of its value, by which frequencies are differentiated: the fourth
+order leaves 1e-12 of a smooth frequency, and rounding 1e-11."""
