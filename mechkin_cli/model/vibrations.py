@@ -10,6 +10,8 @@ import numpy as np
 from mechkin_cli import view
 from mechkin_cli.analysis import Analysis, Solvable
 from mechkin_cli.arguments import a_whole_number, texts
+from mechkin_cli.expressions import parse
+from mechkin_cli.tables import ColumnLayout, TableLayout
 from mechkin_cli.vibration import Vibration, freed, played
 
 if TYPE_CHECKING:
@@ -77,9 +79,15 @@ def vibration(
         ):
             parts = np.asarray(shape.real), np.asarray(shape.imag)
             rows = played(place, analysis.result, row, parts, float(frequency))
-            yield Analysis(model, (), rows, f"mode {number + 1}, {frequency:.4g} Hz")
+            name = f"mode {number + 1}, {frequency:.4g} Hz"
+            yield Analysis(model, (_swung(name, found.coordinates),), rows, name)
 
     return Vibration(place, again, shown)
+
+
+def _swung(run: str, coordinates: Sequence[str]) -> TableLayout:
+    columns = tuple(ColumnLayout(name, parse(name)) for name in ("time", *coordinates))
+    return TableLayout(run, "Coordinates over a period", columns, run=run)
 
 
 def _first_run(model: Moving) -> str:

@@ -12,7 +12,8 @@ import numpy as np
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel.functions import cos, sin
 from mechkin_cli.mechanism import Moments, MotionInputs
-from mechkin_cli.session import Chart
+from mechkin_cli.plan import Demand
+from mechkin_cli.session import Ask, Chart
 from mechkin_cli.statics import combined
 from mechkin_cli.sweep import Result, SweepRows
 from mechkin_cli.units import TIME
@@ -102,7 +103,10 @@ def played(
     still = np.zeros((small.forces.freedoms, MOMENTS))
     direction = np.repeat(small.place.tangents.ravel()[:, None], MOMENTS, axis=1)
     chart = Chart(direction, still, still, np.zeros((0, MOMENTS)))
-    return PlayedMode(session.moved(problem), run.start, rows, chart)
+    shown = PlayedMode(session.moved(problem), run.start, rows, chart)
+    ask = Ask(Demand.CONDITION)
+    shown.keep(shown.run(ask), ask)
+    return shown
 
 
 def _over_moments(problem: Problem, row: int, angles: Floats, frequency: float) -> Problem:

@@ -436,7 +436,7 @@ class Vibration(Listed):
                 zip(self.frequencies, self.damping_ratios, strict=True)
             )
         )
-        count = '1 mode' if len(rows) == 1 else f'{len(rows)} modes'
+        count = "1 mode" if len(rows) == 1 else f"{len(rows)} modes"
         title = f"{count} of {', '.join(self.coordinates)}"
         return Listing(title, ("mode", "frequency", "damping ratio", "moves most"), rows)
 

@@ -485,6 +485,8 @@ def _title(name: str, problem: Problem, run: str) -> str:
 def _may_read_forces(analysis: ShownAnalysis, notes: list[Diagnostic]) -> bool:
     """Whether reactions are there to be shown; a note says why not."""
     result = analysis.result
+    if not (analysis.run == SWEEP or analysis.run in analysis.model.problem.responses):
+        return False  # what loads are where a mode of vibration swings shows nothing
     if not has_forces(result.problem.mechanism) or not result.solved.any():
         return False
     try:
