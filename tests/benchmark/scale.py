@@ -1,11 +1,12 @@
 """Runs of any length: time and memory of sweeps of 10^2 to 10^8 rows as whole processes, beside
-polars and pyarrow writing the same numbers; prints the tables of docs/scale.md.
+polars and pyarrow writing the same numbers, and what scale_parts.py measures; prints the tables of
+docs/scale.md.
 
-    python -P tests/benchmark/scale.py [--most ROWS] [--json]
+    python -P tests/benchmark/scale.py [--most ROWS] [--up-to NUMBER] [PART...] [--json]
 
 Ten columns of RCSR: positions, rates, an effort and a reaction. Times are by the processor's
-clock, as the machine may be shared; slopes are of log time over log rows, between the two largest
-runs.
+clock, as the machine may be shared. Slopes are of log time over log of what grows: of the last
+step, and of the whole table.
 """
 
 from __future__ import annotations
@@ -111,22 +112,58 @@ def page(lines: Sequence[dict[str, float]]) -> str:
             cells += [f"{line[way]:.2f}", f"{line[f'{way} MB']:.0f}"]
         cells += [f"{line['polars csv']:.2f}", f"{line['pyarrow parquet']:.2f}"]
         found.append(f"| {' | '.join(cells)} |")
-    if len(lines) > 1:
-        before, last = lines[-2:]
-        way = math.log(last["rows"] / before["rows"])
-        slopes = [f"{one} {math.log(last[one] / before[one]) / way:.2f}" for one in WAYS]
-        found += ["", f"Slopes of the last step: {', '.join(slopes)}."]
-    return "\n".join(found)
+    return "\n".join([*found, "", slopes(lines, "rows", list(WAYS))])
+
+
+def slopes(lines: Sequence[dict[str, float]], by: str, names: Sequence[str]) -> str:
+    """On log-log paper, from the line before to the last, and over all."""
+
+    def slope(one: str, first: dict[str, float]) -> str:
+        last = lines[-1]
+        if not first[one] or not last[one]:
+            return "-"
+        return f"{math.log(last[one] / first[one]) / math.log(last[by] / first[by]):.2f}"
+
+    if len(lines) < 2:
+        return ""
+    told = [f"{one} {slope(one, lines[-2])} ({slope(one, lines[0])})" for one in names]
+    return f"Slopes of the last step (of all): {', '.join(told)}."
+
+
+def part_page(lines: Sequence[dict[str, float]]) -> str:
+    """The table of a part of scale_parts.py: what grows, then seconds."""
+    by, *names = lines[0]
+    counted = [name for name in names if name == "unknowns"]
+    timed = [name for name in names if name not in counted]
+    heads = [by, *counted, *(f"{name}, s" for name in timed)]
+    found = [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
+    for line in lines:
+        cells = [f"{line[name]:,.0f}" for name in (by, *counted)]
+        found.append(f"| {' | '.join([*cells, *(f'{line[name]:.2g}' for name in timed)])} |")
+    return "\n".join([*found, "", slopes(lines, by, timed)])
 
 
 def main() -> None:
     """Measures and prints."""
+    sys.path[:0] = [str(HERE.parent), str(HERE.parents[1])]
+    from benchmark.scale_parts import PARTS
+
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--most", type=float, default=1e7, help="rows of the longest run")
+    parser.add_argument("--up-to", type=float, default=math.inf, help="of the other parts")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("parts", nargs="*", choices=[[], "rows", *PARTS], metavar="PART")
     options = parser.parse_args()
-    lines = measured(round(options.most))
-    print(json.dumps(lines) if options.json else page(lines))
+    for name in options.parts or ("rows", *PARTS):
+        if name == "rows":
+            lines, shown = measured(round(options.most)), page
+        else:
+            part, most = PARTS[name]
+            lines, shown = [], part_page
+            for line in part(int(min(most, options.up_to))):
+                lines.append(line)
+                print(json.dumps(line), file=sys.stderr, flush=True)
+        print(json.dumps({name: lines}) if options.json else f"{name}\n\n{shown(lines)}\n")
 
 
 if __name__ == "__main__":
