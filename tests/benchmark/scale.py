@@ -3,10 +3,12 @@ polars and pyarrow writing the same numbers, and what scale_parts.py measures; p
 docs/scale.md.
 
     python -P tests/benchmark/scale.py [--most ROWS] [--up-to NUMBER] [PART...] [--json]
+    python -P tests/benchmark/scale.py --kernel [--most ROWS]
 
 Ten columns of RCSR: positions, rates, an effort and a reaction. Times are by the processor's
 clock, as the machine may be shared. Slopes are of log time over log of what grows: of the last
-step, and of the whole table.
+step, and of the whole table. `--kernel`: what a run that keeps no rows takes in parts of its calls
+of the kernel alone, and responses of a pendulum with as many rows.
 """
 
 from __future__ import annotations
@@ -99,6 +101,77 @@ def measured(most: int) -> list[dict[str, float]]:
     return lines
 
 
+PENDULUM = """format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links: {{bob: {{mass: 1, center_of_mass: [0, -1], inertia: 0}}}}
+joints: {{O: {{type: R, links: [ground, bob], point: [0, 0]}}}}
+loads: [{{type: gravity, g: [0, -9.80665]}}]
+responses: {{swing: {{start: {{O.theta: 1}}, time: {{from: 0, to: 10, count: {rows}}}}}}}
+tables:
+  - {{name: t, run: swing, columns: [time, O.theta, O.theta_dot, row.energy_error]}}
+"""
+
+INSIDE = """
+import sys
+from time import process_time
+from mechkin_cli.session import Session
+from mechkin_cli.__main__ import main
+
+spent = [0.0]
+
+def timed(work):
+    def call(*args, **named):
+        start = process_time()
+        try:
+            return work(*args, **named)
+        finally:
+            spent[0] += process_time() - start
+    return call
+
+Session.run, Session.follow_rows = timed(Session.run), timed(Session.follow_rows)
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code
+print(spent[0], process_time())
+"""
+"""A command in a process of its own, and the seconds that it spends in calls of the kernel, and in
+all."""
+
+
+def inside(text: str, folder: Path) -> tuple[float, float]:
+    """Seconds of the kernel and of all in a run that keeps no rows."""
+    path = folder / "own.yaml"
+    path.write_text(text, encoding="utf-8")
+    words = ["analyze", str(path), "--summary-only", "--quiet", "--out", str(folder / "o")]
+    command = [sys.executable, "-P", "-c", INSIDE, *words]
+    found = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    kernel, whole = map(float, found.split())
+    return kernel, whole
+
+
+def beside_the_kernel(rows: int) -> str:
+    """What peaks alone take in parts of the kernel's calls; and responses, by their rows."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        start = min(inside(long_text(100), folder)[1] for _ in range(3))
+        kernel, whole = min(inside(long_text(rows), folder) for _ in range(3))
+        said = [
+            f"RCSR, {rows:,} rows, peaks alone: {whole:.2f} s, {start:.2f} of them to start; the "
+            f"kernel {kernel:.2f} s; behind the start {(whole - start) / kernel:.2f} times that"
+        ]
+        for count in (rows // 10, rows):
+            path = folder / "p.yaml"
+            path.write_text(PENDULUM.format(rows=count), encoding="utf-8")
+            program = [sys.executable, "-P", "-m", "mechkin_cli", "analyze", str(path)]
+            for way, options in WAYS.items():
+                out = ["--quiet", "--out", str(folder / "r")]
+                seconds, megabytes = cost([*program, *options, *out])
+                said.append(f"response, {count:,} rows, {way}: {seconds:.2f} s, {megabytes:.0f} MB")
+    return "\n".join(said)
+
+
 def page(lines: Sequence[dict[str, float]]) -> str:
     """The table, as docs/scale.md has it."""
     heads = ["rows"]
@@ -152,8 +225,12 @@ def main() -> None:
     parser.add_argument("--most", type=float, default=1e7, help="rows of the longest run")
     parser.add_argument("--up-to", type=float, default=math.inf, help="of the other parts")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--kernel", action="store_true", help="peaks beside the kernel; responses")
     parser.add_argument("parts", nargs="*", choices=[[], "rows", *PARTS], metavar="PART")
     options = parser.parse_args()
+    if options.kernel:
+        print(beside_the_kernel(round(options.most)))
+        return
     for name in options.parts or ("rows", *PARTS):
         if name == "rows":
             lines, shown = measured(round(options.most)), page
