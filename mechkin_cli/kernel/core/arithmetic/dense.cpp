@@ -40,7 +40,8 @@ void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& b
   for (int k = n - 1; k >= 0; --k) {
     for (int i = k + 1; i < n; ++i)
       for (int j = 0; j < columns; ++j) x[k * columns + j] -= a[k * n + i] * x[i * columns + j];
-    for (int j = 0; j < columns; ++j) x[k * columns + j] /= pivot[k];
+    const double inverse = 1.0 / pivot[k];
+    for (int j = 0; j < columns; ++j) x[k * columns + j] *= inverse;
   }
 }
 
@@ -112,7 +113,8 @@ void spectral_bounds(double* power, double* room, int size, Use&& use) {
     double root = norm;
     for (int i = 0; i < k; ++i) root = std::sqrt(root);
     if (use(scale * root) || k == 5 || norm == 0.0) return;
-    for (int e = 0; e < entries; ++e) power[e] /= norm;
+    const double inverse = 1.0 / norm;
+    for (int e = 0; e < entries; ++e) power[e] *= inverse;
     scale *= root;
     square_into<N>(power, size, room);
     std::swap(power, room);
