@@ -126,7 +126,13 @@ class Known:
                 state[session.layout.state(edge, freedom)] += 2.0 * np.pi * turn
             elif (slot := session.structure.turn_slot(known[item.name])) is not None:
                 slots[slot] += 2.0 * np.pi * turn
-        return one._replace(place=one.place._replace(state=state, turns=slots))
+        place = one.place._replace(state=state, turns=slots)
+        # a spring on an angle counts its turns: a turn further loads may not balance
+        found = self.balancing.forces.at(place, np.zeros((values.size, 1)))
+        left = float(np.max(np.abs(found.forces)))
+        if not (found.good.all() and left <= tolerances.TURNED_BALANCE * one.largest):
+            return None
+        return one._replace(place=place)
 
 
 class _Stretch(NamedTuple):

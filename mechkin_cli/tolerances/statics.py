@@ -155,3 +155,7 @@ FOLD_STEP: Final = 1e-7
 
 ARC_COSINE: Final = 0.9
 """Least cosine between the directions of a branch a step apart."""
+
+TURNED_BALANCE: Final = 1e-9
+"""Force left at an equilibrium whose angles were turned by whole turns, in parts of the largest of
+one load, up to which it is one still: turns add rounding alone, a spring that counts them 2 pi."""

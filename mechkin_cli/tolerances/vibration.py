@@ -8,6 +8,10 @@ SMALL_IMBALANCE: Final = 1e-9
 """Effort along a coordinate, in parts of the largest stiffness (per rad or m), below which a row is
 said to be in balance: equilibria are found to 1e-12 of the largest load."""
 
+NO_BEND: Final = 1e-13
+"""Force along a chart, in parts of its largest stiffness, below which what holds a place adds
+nothing to the stiffness: that is right to 1e-12."""
+
 SYMMETRIC_STIFFNESS: Final = 1e-9
 """Part of a matrix's largest entry, scaled to the inertia, by which it may be unsymmetric or damp
 and still count as symmetric, or as no damping: differences of forces leave up to 1e-11."""

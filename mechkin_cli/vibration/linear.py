@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import Quantity, Vector
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, is_angle
@@ -91,12 +92,19 @@ class SmallMotions:
         # what the coordinates need to stay
         left, _, back = self._left(self.still())
         self.efforts = _by_places(turned(back), left)[:, 0]
+        self.pushed = float(np.abs(left).max(initial=0.0))
         holding, efforts = self.coordinates, self.efforts
         if held_by is not None and tuple(held_by) != holding:
             holding = tuple(held_by)
             rates = self._rates(here, driven, self._readout(holding, 1))[0]
             efforts = solved(turned(rates)[0], left)[:, 0]
         self._held = holding, efforts
+
+    @property
+    def is_balanced(self) -> bool:
+        """Whether what holds the place is rounding beside its stiffness."""
+        largest = float(np.abs(self.matrices[0]).max(initial=0.0))
+        return float(np.abs(self.efforts).max(initial=0.0)) <= tolerances.SMALL_IMBALANCE * largest
 
     def with_forces(self, forces: Forces) -> SmallMotions:
         """The same motions, read with other loads."""
@@ -199,9 +207,9 @@ class SmallMotions:
             return stiffness, damping, 0.5 * (inertia + inertia.T)
         forces, place = self.forces, self.place
         along = forces.stiffness(place).matrix
-        bend = self._bend()
-        if bend is not None:
-            along = along - bend / self.energy
+        stiffest = self.energy * float(np.abs(along).max(initial=0.0))
+        if self.pushed > tolerances.NO_BEND * stiffest:
+            along = along - self._bend() / self.energy
         loads = forces.session.problem.mechanism.loads
         damping = np.zeros_like(along)
         if any(load.reads_rates for load in loads):
@@ -214,13 +222,11 @@ class SmallMotions:
         stiffness, damping, inertia = named
         return stiffness, damping, inertia
 
-    def _bend(self) -> Floats | None:
+    def _bend(self) -> Floats:
         """The second derivatives (freedoms, freedoms) by the chart of the coordinates along which
-        efforts hold the place, each times its effort, J; None where nothing holds it."""
+        efforts hold the place, each times its effort, J."""
         assert self._held is not None
         names, efforts = self._held
-        if not efforts.any():
-            return None
         n = self.forces.freedoms
         pairs = [(i, k) for i in range(n) for k in range(i, n)]
         rates = np.zeros((n, len(pairs)))

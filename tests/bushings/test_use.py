@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import mechkin_cli as mk
 from mechkin_cli.balances.dense import borne_wrenches, row_motion
 from mechkin_cli.diagnostics import InvalidFile
+
+MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 
 PARALLEL = """format: 1
 plane: xy
@@ -238,3 +242,46 @@ def test_no_effort_acts_at_a_pose() -> None:
     text = RUBBER.replace("    time:", "    efforts: {pose.x: 3}\n    time:")
     with pytest.raises(InvalidFile, match="carries no effort"):
         mk.loads(text)
+
+
+BEAM = """format: 1
+units: {length: mm, force: N, angle: rad}
+links: {beam: {mass: 30, center_of_mass: [100, 0, 0]}}
+joints: {pose: {type: F, links: [ground, beam], point: [0, 0, 0]}}
+loads:
+  - {type: gravity, g: standard}
+  - {type: bushing, name: left, links: [ground, beam], point: [-500, 0, 0], stiffness: STIFF}
+  - {type: bushing, name: middle, links: [ground, beam], point: [0, 0, 0], stiffness: STIFF}
+  - {type: bushing, name: right, links: [ground, beam], point: [500, 0, 0], stiffness: STIFF}
+equilibria:
+  rest: {near: {pose.x: 0, pose.y: 0, pose.z: 0, pose.rz: 0, pose.ry: 0, pose.rx: 0}}
+"""
+
+
+def test_a_beam_on_three_stiff_mounts() -> None:
+    """Statically undetermined on three rigid supports; on three equal stiff mounts they share the
+    weight as a straight beam sinks: W/3 + W a x / (sum of x^2)."""
+    stiff = "{x: 1e6, y: 1e6, z: 1e6, rx: 1e6}"
+    r = mk.loads(BEAM.replace("STIFF", stiff)).equilibrium("rest")
+    weight = 30 * 9.80665
+    for name, x in (("left", -500), ("middle", 0), ("right", 500)):
+        share = weight / 3 + weight * 100 * x / (2 * 500**2)
+        assert r[f"{name}.force"][0, 2] == pytest.approx(share, rel=1e-5), name
+    # what is left of forces at rest is rounding
+    total = sum(r[f"{name}.force"][0] for name in ("left", "middle", "right"))
+    assert total == pytest.approx([0, 0, weight], abs=1e-6)
+
+
+def test_the_same_bits_in_all_lanes() -> None:
+    one, *others = (mk.loads(MOUNTED).analyze(ASKED, lanes=lanes, threads=1) for lanes in (2, 4, 8))
+    for other in others:
+        for name in ASKED:
+            assert (one[name] == other[name]).all(), name
+
+
+def test_a_bushing_on_an_idle_link_is_told() -> None:
+    """A rod between two balls that a bushing would turn about its line."""
+    text = (MECHANISMS / "classics" / "rssr.yaml").read_text(encoding="utf-8")
+    bushing = "{type: bushing, links: [ground, coupler], point: middle, stiffness: {rx: 3}}"
+    with pytest.raises(InvalidFile, match="a bushing holds coupler"):
+        mk.loads(text.replace("loads:\n", f"loads:\n  - {bushing}\n")).analyze()
