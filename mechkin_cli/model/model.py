@@ -401,12 +401,7 @@ class Model(Listed):
         """
         from mechkin_cli.model.vibrations import vibration
 
-        def loaded(data: Mapping[str, Any]) -> Model:
-            other = load(data, folder=self.design.built.document.folder)
-            values = {n: x for n, x in self.parameters.items() if x != other.parameters[n]}
-            return other.with_parameters(values) if values else other
-
-        return vibration(self, run, row, coordinates, held, loaded)
+        return vibration(self, run, row, coordinates, held)
 
     def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
         """All runs of the file, or one.

@@ -23,9 +23,3 @@ differences of forces leave up to 1e-12 of the largest stiffness."""
 PARAMETER_STEP: Final = 1e-3
 """Step of a parameter, in parts of its value, by which frequencies are differentiated: the fourth
 order leaves 1e-12 of a smooth frequency, and rounding 1e-11."""
-
-SEEN_TURN: Final = 0.15
-"""Amplitude of a mode that is played, rad: 8 degrees are seen well and close still."""
-
-SEEN_SLIDE: Final = 0.05
-"""The same of a slide, in parts of the mechanism's size."""

@@ -6,17 +6,17 @@ file are: rates of coordinates are rates then, and programs for control need tha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError
-from mechkin_cli.kernel.functions import atan2, cos, sin
+from mechkin_cli.kernel.functions import atan2
 from mechkin_cli.mechanism import JointLoad, LinkLoad, is_angle
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response import with_loads
@@ -104,12 +104,9 @@ class Vibration(Listed):
     """
 
     def __init__(
-        self,
-        freed: Freed,
-        again: Callable[[str, float], Vibration] | None = None,
-        play: Callable[[Mapping[str, Floats]], Any] | None = None,
+        self, freed: Freed, again: Callable[[str, float], Vibration] | None = None
     ) -> None:
-        self._freed, self._again, self._play = freed, again, play
+        self._freed, self._again = freed, again
         self._small = freed.motions
         self.coordinates: tuple[str, ...] = freed.motions.coordinates
         self.driven: tuple[str, ...] = freed.driven
@@ -175,40 +172,6 @@ class Vibration(Listed):
         if not np.isfinite(moved):
             raise UsageError("some mode has no stiffness")
         return float(1.0 / moved) if moved else float("inf")
-
-    def played(self, mode: int, amplitude: float | None = None, rows: int = 49) -> Any:
-        """A model whose sweep is a mode's motion over one period, for `view`, `plot` and tables;
-        its loops are closed as in every sweep.
-
-        Args:
-            mode: its number, from 1.
-            amplitude: rad or m, of the coordinate that moves most; None: what is seen well.
-            rows: of the period, the last as the first.
-
-        Raises:
-            UsageError: there is no such mode, or the motion is not that of a model.
-        """
-        if self._play is None:
-            raise UsageError("these small motions are not those of a model")
-        if not 1 <= mode <= len(self.eigenvalues):
-            raise UsageError(f"there is no mode {mode}: modes are 1 to {len(self.eigenvalues)}")
-        shape = self._natural.shapes[:, mode - 1]
-        most = int(np.argmax(_sizes(shape)))
-        if amplitude is None:
-            size = self._freed.session.layout.mechanism.box_diagonal()
-            slide = tolerances.SEEN_SLIDE * (size or 1.0)
-            amplitude = tolerances.SEEN_TURN if self.units[most] == "rad" else slide
-        factor = amplitude / float(_sizes(shape)[most])
-        # of a shape whose numbers are real the first row is the place itself
-        turns = np.arange(rows, dtype=np.float64) * (2.0 * pi / (rows - 1.0))
-        moved = np.asarray(sin(turns)), np.asarray(cos(turns))
-        here = self._reader(self.coordinates)(self._small.still())[0][:, 0]
-        return self._play(
-            {
-                name: at + factor * (part.real * moved[0] + part.imag * moved[1])
-                for name, at, part in zip(self.coordinates, here, shape, strict=True)
-            }
-        )
 
     # What acts, and what is read.
 
