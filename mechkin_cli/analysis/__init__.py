@@ -24,7 +24,7 @@ __getattr__, __dir__ = lazy_names(
         "certificate": "Certificate",
         "design": "Design",
         "runs": "a_packing asking equilibrium input_values respond response_name run_free run_name "
-        "run_sweep stream_sweep",
-        "stream": "Block PartRows Stream",
+        "run_sweep stream_run",
+        "stream": "Block Ended PartRows Stream ended",
     },
 )

@@ -118,7 +118,12 @@ class Solvable(Protocol):
         ...
 
     def run_free(
-        self, name: str, *, tables: Sequence[str] | None = None, mode: str | None = None
+        self,
+        name: str,
+        quantities: Iterable[str] | None = None,
+        *,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
     ) -> Analysis:
         """Runs a response, or finds equilibria, by name."""
         ...
@@ -587,5 +592,5 @@ def _asked_again(
 ) -> Analysis:
     """What a model answers once more."""
     if run != SWEEP:
-        return model.respond(run, **given)
+        return model.run_free(run, **given)
     return model.analyze(closed_at=closed_at, **given)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,7 +39,8 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.building import Built
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.mechanism import AnyBalance
+    from mechkin_cli.expressions import Quantity
+    from mechkin_cli.mechanism import AnyBalance, ResponseProblem
     from mechkin_cli.sweep import Result
     from mechkin_cli.tables import CoefficientsLayout
 
@@ -331,7 +332,23 @@ def run_sweep(
     return analysis
 
 
-def stream_sweep(
+def stream_run(
+    model: Solvable,
+    run: str | None,
+    quantities: Iterable[str] | None,
+    rows: int,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Stream:
+    """A run of a model block by block; arguments and errors are those of `Model.stream`."""
+    if run is None or run == SWEEP:
+        return _stream_sweep(model, quantities, rows, tables, mode, lanes, threads)
+    return _stream_response(model, run, quantities, rows, tables, mode, lanes, threads)
+
+
+def _stream_sweep(
     model: Solvable,
     quantities: Iterable[str] | None,
     rows: int,
@@ -340,13 +357,34 @@ def stream_sweep(
     lanes: int,
     threads: int,
 ) -> Stream:
-    """The sweep of a model block by block; arguments and errors are those of `Model.stream`."""
     packing = a_packing(lanes, threads)
     rows = a_whole_number("rows", rows, "rows of a block", least=1)
     asked = _asked(model, quantities, tables, mode, None, packing, balanced=False)
     if mode is not None:
         refuse_unknown_mode(asked.sweep.start.diagnostics)
     return Stream(model, asked.layouts, asked.sweep, rows)
+
+
+def _stream_response(
+    model: Solvable,
+    name: str,
+    quantities: Iterable[str] | None,
+    rows: int,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Stream:
+    packing = a_packing(lanes, threads)
+    rows = a_whole_number("rows", rows, "rows of a block", least=1)
+    run = response_name(model.design.at_responses.problem, name)
+    asked = _asked_run(model, run, quantities, tables, mode)
+    blocks = response_room.ResponseBlocks(
+        asked.problem, asked.response, asked.names, packing, asked.session
+    )
+    if mode is not None:
+        refuse_unknown_mode(blocks.start.diagnostics)
+    return Stream(model, asked.layouts, blocks, rows, asked.response.name)
 
 
 def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
@@ -365,6 +403,39 @@ def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
         why = f"closed_at {', '.join(closings) or 'nothing'}: {error.diagnostic.message}"
         cure = "leave out closed_at, or choose other closing joints"
         raise UsageError(f"{why}; {cure}") from None
+
+
+class _AskedRun(NamedTuple):
+    """A response or equilibria that are asked for, with their tables and the quantities that these
+    read beside those named."""
+
+    problem: Problem
+    response: ResponseProblem
+    session: Session
+    layouts: tuple[TableLayout, ...]
+    names: tuple[str, ...]
+
+
+def _asked_run(
+    model: Solvable,
+    run: str,
+    quantities: Iterable[str] | None,
+    tables: Sequence[str] | None,
+    mode: str | None,
+) -> _AskedRun:
+    """A run of a model as it is asked for; arguments and errors are those of `Model.respond`."""
+    design = model.design.at_responses
+    problem = design.problem
+    session = model.design.session_of(run)
+    response = problem.responses[run]
+    if mode is not None:
+        a_text("mode", mode, '"A"')
+        assembly = replace(response.assembly, near={}, mode=mode)
+        response = replace(response, assembly=assembly)
+        session = session.assembled(assembly)
+    layouts = chosen_tables(design.built, tables, run)
+    names = wanted_names(session, run, layouts, quantities)
+    return _AskedRun(problem, response, session, layouts, tuple(names))
 
 
 def respond(
@@ -420,7 +491,30 @@ def asking(
     file = section_with(
         built.file, equilibria={**built.file.equilibria, name: section}, tables=(), balances=()
     )
-    return name, Design(build(file, built.document, design.given), design.stem, design.given)
+    made = build(file, built.document, design.given)
+    return name, _Asking(made, design.stem, design.given, (design, near, window))
+
+
+class _Asking(Design):
+    """A design with equilibria that its text does not have; `asked` is what it was made of."""
+
+    def __init__(
+        self, built: Built, stem: str, given: Mapping[str, Quantity], asked: tuple[Any, ...]
+    ) -> None:
+        super().__init__(built, stem, given)
+        self.asked = asked
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as what it was made of."""
+        return _asked_again, self.asked
+
+
+def _asked_again(
+    design: Design,
+    near: Mapping[str, Setting] | None,
+    window: Mapping[str, tuple[Setting, Setting]] | None,
+) -> Design:
+    return asking(design, near, window)[1]
 
 
 def _written(value: Setting) -> str:
@@ -451,21 +545,14 @@ def run_free(
     packing: Packing = _ANY_PACKING,
 ) -> Analysis:
     """A response, or equilibria, by name; errors are those of `Model.respond`."""
-    design = model.design.at_responses
-    problem = design.problem
-    session = model.design.session_of(run)
-    response = problem.responses[run]
-    if mode is not None:
-        a_text("mode", mode, '"A"')
-        assembly = replace(response.assembly, near={}, mode=mode)
-        response = replace(response, assembly=assembly)
-        session = session.assembled(assembly)
-    layouts = chosen_tables(design.built, tables, run)
-    names = wanted_names(session, run, layouts, quantities)
-    args = (problem, response, names, packing, session)
+    asked = _asked_run(model, run, quantities, tables, mode)
+    args = (asked.problem, asked.response, asked.names, packing, asked.session)
     result: Result
-    result = response_room.respond(*args) if response.search is None else statics.balance(*args)
-    analysis = Analysis(model, layouts, result, run, asked=tuple(names))
+    if asked.response.search is None:
+        result = response_room.respond(*args)
+    else:
+        result = statics.balance(*args)
+    analysis = Analysis(model, asked.layouts, result, run, asked=asked.names)
     if mode is not None:
         refuse_unknown_mode(analysis.diagnostics)
     return analysis

@@ -1,7 +1,9 @@
-"""A sweep block by block: what `analyze` gives of all rows at once, in the memory of some of them.
+"""A run block by block: what `analyze` and `respond` give of all rows at once, in the memory of
+some of them.
 
-Rows are solved in parts of a size of their own (`sweep.parts`), so that no answer depends on how
-many are taken at a time; what is said of the whole run is known when its rows have been taken.
+Rows are solved in parts of a size of their own (`sweep.parts`, `response.blocks`), so that no
+answer depends on how many are taken at a time; what is said of the whole run is known when its rows
+have been taken.
 """
 
 from __future__ import annotations
@@ -17,42 +19,52 @@ from mechkin_cli.arguments import a_text
 from mechkin_cli.assembly import rows_of_start
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import LEDGER_KINDS
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.response import ResponseResult
 from mechkin_cli.row_notes import Notes
 from mechkin_cli.show import Named
-from mechkin_cli.sweep import RunVerdicts, has_parts
+from mechkin_cli.sweep import RunVerdicts, Sweep, has_parts
 from mechkin_cli.tables import Columns, RunParameter, column_of, joined_column, moving_input
-from mechkin_cli.verdict import SWEEP
+from mechkin_cli.units import TIME
+from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.sweep import Result, Sweep
+    from mechkin_cli.response import ResponseBlocks
+    from mechkin_cli.sweep import Result
     from mechkin_cli.tables import TableColumn, TableLayout
 
 
 class Stream:
-    """The rows of a sweep in blocks, each of which may be forgotten when the next one is taken.
+    """The rows of a run in blocks, each of which may be forgotten when the next one is taken.
 
-    It may be gone through several times; each time the sweep is run anew.
+    It may be gone through several times; each time the run is made anew.
 
     Attributes:
         model: of the file.
         layouts: of the tables that were asked for.
         rows: how many a block has, but for the last one.
         run_rows: how many the run has.
+        run: `sweep`, or the name of the response.
         branch: the mode of the rows, and how the first assembly was found.
+        ended: where a response has ended, as far as its rows have been taken; None before.
     """
 
     def __init__(
-        self, model: Solvable, layouts: tuple[TableLayout, ...], sweep: Sweep, rows: int
+        self,
+        model: Solvable,
+        layouts: tuple[TableLayout, ...],
+        source: Sweep | ResponseBlocks,
+        rows: int,
+        run: str = SWEEP,
     ) -> None:
-        self.model, self.layouts, self.rows = model, layouts, rows
-        self.run_rows = sweep.session.problem.motion.rows
-        self.sweep = sweep
-        if has_parts(sweep.session):
-            whole = [each.name for each in sweep.asked if each.kind in LEDGER_KINDS]
+        self.model, self.layouts, self.rows, self.run = model, layouts, rows, run
+        self.source, self.run_rows = source, source.run_rows
+        if isinstance(source, Sweep) and has_parts(source.session):
+            whole = [each.name for each in source.asked if each.kind in LEDGER_KINDS]
             if whole:
                 raise UsageError(
                     f"{whole[0]} of a row depends on all rows of the run, which are not held here; "
@@ -61,6 +73,7 @@ class Stream:
         self._verdicts = RunVerdicts()
         self._notes = Notes(self.run_rows)
         self.branch = "", ""
+        self.ended: Ended | None = None
 
     def __iter__(self) -> Iterator[Block]:
         """The blocks, in the order of the rows.
@@ -85,15 +98,27 @@ class Stream:
     def parts(self) -> Iterator[tuple[PartRows, slice]]:
         """The rows as they are solved, and which of each part are in none before it."""
         verdicts, notes = self._verdicts, self._notes = RunVerdicts(), Notes(self.run_rows)
-        for part in self.sweep.parts():
+        self.ended = None
+        for part in self.source.parts():
             verdicts.add(part.result, part.own)
             rows = part.result.row_states
             notes.add(rows.diagnostics, rows.span.first, part.own)
             self.branch = part.result.mode, part.result.how
+            if self.run != SWEEP:
+                error = np.asarray(part.result.quantity("row.energy_error").value)
+                verdicts.measure("energy error", error[part.own])
+                self.ended = ended(part.result, self.ended)
             solved, own = PartRows(self, part.result), part.own
             del part, rows
             yield solved, own
             del solved
+
+    @property
+    def in_blocks(self) -> bool:
+        """Whether memory does not go with the rows: the run has several parts."""
+        if isinstance(self.source, Sweep):
+            return has_parts(self.source.session)
+        return self.source.in_blocks
 
     @property
     def verdicts(self) -> RunVerdicts:
@@ -103,22 +128,27 @@ class Stream:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What the run has to say of the rows that have been solved so far."""
-        own = self.sweep.session.problem.diagnostics
-        return (*own, *self.sweep.start.diagnostics, *self._notes.found())
+        own = self.source.session.problem.diagnostics
+        return (*own, *self.source.start.diagnostics, *self._notes.found())
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:
         """Time, where there is one, and the inputs, by name."""
-        motion = self.sweep.session.problem.motion
+        if not isinstance(self.source, Sweep):
+            return ("time", *self.source.driven)
+        motion = self.source.session.problem.motion
         names = tuple(item.name for item in motion.inputs)
         return names if motion.time is None else ("time", *names)
 
     @cached_property
     def along(self) -> RunParameter | None:
         """What the run goes along: with its values in some of the rows."""
-        motion = rows_of_start(self.sweep.session)[0].problem.motion
+        units, known = self.source.session.problem.units, self.source.session.problem.quantities()
+        if not isinstance(self.source, Sweep):
+            unit = units.label(known["time"].dimension)
+            return RunParameter("time", self.source.moments, unit)
+        motion = rows_of_start(self.source.session)[0].problem.motion
         time = {} if motion.time is None else {"time": motion.time.written}
-        units, known = self.sweep.session.problem.units, self.sweep.session.problem.quantities()
         return moving_input(
             {**time, **{item.name: item.written for item in motion.inputs}},
             lambda name: units.label(known[name].dimension),
@@ -139,11 +169,39 @@ class Stream:
         return f"{self.model.name}: {self.run_rows} rows in {len(self)} blocks"
 
 
+class Ended(NamedTuple):
+    """Where a response has ended: its last row with a position by its number from 0, the moment and
+    the event of it; the moment at which the motion was over; and the status of the row behind it,
+    None where none is known."""
+
+    row: int
+    time: float
+    event: str
+    over: float
+    behind: Status | None
+
+
+def ended(result: Result, before: Ended | None = None) -> Ended | None:
+    """Where some rows of a response have ended, behind those before them."""
+    solved = np.flatnonzero(result.solved)
+    if not solved.size:
+        if before is None or before.behind is not None or not result.rows:
+            return before
+        return before._replace(behind=Status(int(result.status[0])))
+    last = int(solved[-1])
+    behind = Status(int(result.status[last + 1])) if last + 1 < result.rows else None
+    row = last + result.row_states.span.first
+    time = float(result.inputs["time"][last])
+    report = result.report if isinstance(result, ResponseResult) else None
+    over = time if report is None else float(result.units.from_si(report.time, TIME))
+    return Ended(row, time, result.events[last], over, behind)
+
+
 class PartRows:
     """The rows of a part, whose columns are evaluated once for all blocks."""
 
     def __init__(self, stream: Stream, result: Result) -> None:
-        self.analysis = Analysis(stream.model, stream.layouts, result, SWEEP)
+        self.analysis = Analysis(stream.model, stream.layouts, result, stream.run)
         self.rows = result.rows
         self._columns: dict[tuple[int, int], TableColumn] = {}
         self._values: dict[str, NDArray[Any]] = {}
@@ -170,7 +228,7 @@ class _Piece:
 
 
 class Block:
-    """Some neighbouring rows of a sweep: `block["O4.theta"]` is an array over them, in the file's
+    """Some neighbouring rows of a run: `block["O4.theta"]` is an array over them, in the file's
     units, as that of an analysis; `first` is the number of the first row, from 0."""
 
     def __init__(self, first: int, pieces: Sequence[_Piece]) -> None:

@@ -83,9 +83,15 @@ from mechkin_cli.reading import Document, in_order
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import Flanks, MechanismFile
 from mechkin_cli.session import Session, solver_graph
-from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed
+from mechkin_cli.structure import (
+    SolverGraph,
+    UnsolvableGraph,
+    is_too_large,
+    listed,
+    most_equations,
+)
 from mechkin_cli.tables import CoefficientsLayout, TableLayout
-from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
+from mechkin_cli.tolerances import SMALLEST_SIZE
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -298,7 +304,7 @@ def build_problem(
     from mechkin_cli.building.responses import build_responses
 
     free = replace(problem, mechanism=with_plays(mechanism, plays))
-    args = (fields, file.free_runs, free, loads, per_row, moving)
+    args = (fields, file.free_runs, free, loads, moving)
     return replace(problem, responses=build_responses(*args))
 
 
@@ -364,7 +370,7 @@ def graph_as_built(problem: Problem, alike: Sequence[LockedFreedom] = ()) -> Sol
         graph = solver_graph(problem.solved_mechanism, problem.driven)
     except UnsolvableGraph:
         return None
-    if any(block.equations > MOST_EQUATIONS for block in graph.blocks):
+    if is_too_large(graph):
         return None
     if is_home_singular(Session.of(problem, graph)):
         own = mobility.held_to_family(problem, alike)
@@ -374,9 +380,10 @@ def graph_as_built(problem: Problem, alike: Sequence[LockedFreedom] = ()) -> Sol
 
 def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
     """Whether every block is small enough, since the work grows with the cube of the equations to
-    solve together; the first that is not is noted."""
+    solve together, or with their number where they are a band; the first that is not is noted."""
     for block in graph.blocks:
-        if block.equations <= MOST_EQUATIONS:
+        most = most_equations(graph, block)
+        if block.equations <= most:
             continue
         closings = [graph.closings[c] for c in block.closings]
         members = {graph.edges[k].joint.name for k in graph.passed(block)}
@@ -389,8 +396,8 @@ def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
             "drive a coordinate inside, or write parts that do not act on each other in files of "
             "their own",
             measured=f"{block.equations} closing equations",
-            limit=f"{MOST_EQUATIONS} closing equations",
-            numbers=(Number("closing equations", block.equations, limit=MOST_EQUATIONS),),
+            limit=f"{most} closing equations",
+            numbers=(Number("closing equations", block.equations, limit=most),),
         )
         return False
     return True

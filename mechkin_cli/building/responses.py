@@ -280,7 +280,6 @@ def build_responses(
     sections: Mapping[str, written.Response | written.Equilibrium],
     problem: Problem,
     loads: LoadBuilder,
-    per_row: int,
     known: Mapping[str, ResponseProblem] | None = None,
 ) -> dict[str, ResponseProblem]:
     """The responses and equilibria of a file; errors are noted in `fields`.
@@ -290,11 +289,10 @@ def build_responses(
         sections: as written.
         problem: mechanism and assembly of the file.
         loads: all loads of the file.
-        per_row: `numbers_per_row` of the file.
         known: the same responses in doubles, where the file is recorded: moments, drives, stops and
             tolerances are theirs.
     """
-    builder = _ResponseBuilder(fields, problem, loads, per_row)
+    builder = _ResponseBuilder(fields, problem, loads)
     if known is not None:
         return {name: builder.recorded(name, sections[name], known[name]) for name in sections}
     built = {}
@@ -312,14 +310,16 @@ def build_responses(
 class _ResponseBuilder:
     """Builds one response after another; arguments as those of `build_responses`."""
 
-    def __init__(self, fields: Fields, problem: Problem, loads: LoadBuilder, per_row: int) -> None:
+    def __init__(self, fields: Fields, problem: Problem, loads: LoadBuilder) -> None:
         self.fields, self.problem = fields, problem
         self.joints = problem.mechanism.joints
-        self.loads, self.per_row = loads, per_row
+        self.loads, self.per_row = loads, 0
 
     def response(self, name: str, section: written.Response) -> ResponseProblem:
         """The response of a name."""
         path: Path = ("responses", name)
+        # moments, and orders of what is driven: rows may be taken block by block
+        self.per_row = 2 + 8 * len(section.driven or ())
         clock = self._clock(path, section)
         driven = build_inputs(
             self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock

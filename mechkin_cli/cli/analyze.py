@@ -51,19 +51,19 @@ def run_all(
     tables: Sequence[str] | None = None,
     mode: str | None = None,
     tell: Callable[[str], None] = lambda _: None,
-    *,
-    sweep: bool = True,
+    done: Sequence[str] = (),
 ) -> list[Analysis]:
-    """Every run that has one of the tables wanted (None: all), the sweep first, if it is wanted.
+    """Every run that has one of the tables wanted (None: all), the sweep first.
 
     Args:
         tell: is called with words for the run that is under way.
+        done: runs that are left out.
 
     Raises:
         UsageError: no run has a table of a name.
         InvalidFile: a run cannot be solved as it is driven.
     """
-    runs = dict.fromkeys(run for run in model.runs if sweep or run != SWEEP)
+    runs = dict.fromkeys(run for run in model.runs if run not in done)
     wanted = None if tables is None else {run: _of_run(model, tables, run) for run in runs}
     if wanted is not None:
         _refuse_unknown(model, tables or ())
@@ -199,12 +199,15 @@ def _run(model: Model, folder: Path, command: AnalyzeCommand, tell: Tell) -> _Do
     nothing is computed that cannot be written."""
     with table_room.OutputFolder(folder) if command.writes else nullcontext() as output:
         streamed: list[StreamedRun] = []
+        _refuse_unknown(model, command.table or ())
+        done: list[str] = []
         if command.summary_only or _is_long(model):
-            from mechkin_cli.cli.long_runs import is_streamed, stream_to
+            from mechkin_cli.cli.long_runs import stream_to, streamed_runs
 
-            if is_streamed(model, command) and output is not None:
-                streamed.append(stream_to(model, command, output, tell))
-        analyses = run_all(model, command.table, command.mode, tell, sweep=not streamed)
+            if output is not None:
+                done = streamed_runs(model, command)
+                streamed += [stream_to(model, run, command, output, tell) for run in done]
+        analyses = run_all(model, command.table, command.mode, tell, done)
         tell("proving rows" if command.certify else "evaluating tables")
         notes = certify_sweeps(analyses) if command.certify else ()
         if output is None:
@@ -222,7 +225,11 @@ def _run(model: Model, folder: Path, command: AnalyzeCommand, tell: Tell) -> _Do
 
 
 def _is_long(model: Model) -> bool:
-    return SWEEP in model.runs and model.problem.motion.rows > LONG_RUN
+    """Whether some run has many rows."""
+    return any(
+        (model.problem.motion.rows if run == SWEEP else model.design.response(run).rows) > LONG_RUN
+        for run in model.runs
+    )
 
 
 def _changed_notes(folder: Path, names: Sequence[str]) -> list[Diagnostic]:

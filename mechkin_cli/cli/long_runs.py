@@ -1,4 +1,4 @@
-"""What `mechkin analyze` does with a sweep whose rows are not held: each part of them is written
+"""What `mechkin analyze` does with runs whose rows are not held: each part of them is written
 and summed up, and forgotten. A thread writes while the next part is solved."""
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis import stream_sweep
+from mechkin_cli.analysis import stream_run
 from mechkin_cli.cli.messages import put, say
 from mechkin_cli.cli.progress import clock
 from mechkin_cli.cli.show import shown_ends, shown_summary, streamed_summary
@@ -35,6 +35,7 @@ from mechkin_cli.tables import (
     summary_table,
     write_table,
 )
+from mechkin_cli.tolerances import LONG_RUN
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -50,9 +51,9 @@ USUAL_WORDS = ("max", "min")
 """What is found of a table whose rows are not written, where it does not say."""
 
 
-def is_streamed(model: Model, command: AnalyzeCommand) -> bool:
-    """Whether the rows of the model's sweep are not held: they are not wanted, or many, and nothing
-    is asked for that needs them all at once.
+def streamed_runs(model: Model, command: AnalyzeCommand) -> list[str]:
+    """The runs of the model whose rows are not held: they are not wanted, or many, and nothing is
+    asked for that needs them all at once.
 
     Raises:
         UsageError: they are not to be written, but something that needs them is asked for.
@@ -72,22 +73,27 @@ def is_streamed(model: Model, command: AnalyzeCommand) -> bool:
     if command.summary_only:
         if needing:
             raise UsageError(f"--summary-only keeps no rows, and {needing[0]} needs them")
-        _refuse_responses(model, command)
-        return True
-    if SWEEP not in model.runs or not isinstance(model.problem.motion, LongRun):
-        return False
-    return bool(command.asked_formats) and not (needing or _reads_all_rows(model, command))
+        return _wanted_runs(model, command)
+    if needing or not command.asked_formats:
+        return []
+    return [run for run in _wanted_runs(model, command) if _is_long(model, run, command)]
 
 
-def _refuse_responses(model: Model, command: AnalyzeCommand) -> None:
-    own = [run for run in model.runs if run != SWEEP]
+def _wanted_runs(model: Model, command: AnalyzeCommand) -> list[str]:
+    """The runs that have a table which is wanted; all, where none is named."""
+    if command.table is None:
+        return list(model.runs)
     wanted = {table.run for table in chosen(tuple(model.tables), command.table)}
-    found = [run for run in own if run in wanted]
-    if found or SWEEP not in model.runs:
-        raise UsageError(
-            f"--summary-only sums up sweeps, and {', '.join(found or own)} is none; choose "
-            "tables of the sweep with --table"
-        )
+    return [run for run in model.runs if run in wanted]
+
+
+def _is_long(model: Model, run: str, command: AnalyzeCommand) -> bool:
+    """Whether the rows of a run are many, and may be taken block by block."""
+    if run != SWEEP:
+        rows = model.design.response(run).rows
+        return rows > LONG_RUN and stream_run(model, run, None, 1, [], None, 0, 0).in_blocks
+    is_long = isinstance(model.problem.motion, LongRun)
+    return is_long and not _reads_all_rows(model, command)
 
 
 def _reads_all_rows(model: Model, command: AnalyzeCommand) -> bool:
@@ -103,7 +109,7 @@ def _reads_all_rows(model: Model, command: AnalyzeCommand) -> bool:
 
 
 class StreamedRun:
-    """A sweep whose rows were not held: what is said of it afterwards."""
+    """A run whose rows were not held: what is said of it afterwards."""
 
     def __init__(self, stream: Stream, tables: Sequence[_Table], *, summary_only: bool) -> None:
         self.stream = stream
@@ -124,15 +130,19 @@ class StreamedRun:
 
 
 def stream_to(
-    model: Model, command: AnalyzeCommand, output: OutputFolder, tell: Tell
+    model: Model, run: str, command: AnalyzeCommand, output: OutputFolder, tell: Tell
 ) -> StreamedRun:
-    """Runs the sweep of a model, and writes its tables and the verdicts on its rows part by part.
+    """Makes a run of a model, and writes its tables and the verdicts on its rows part by part.
 
     Raises:
         UsageError: a file cannot be written, or a quantity needs all rows at once.
     """
     packing = command.lanes, command.threads
-    stream = stream_sweep(model, None, 1, command.table, command.mode, *packing)
+    names = [each.name for each in chosen(tuple(model.tables), command.table) if each.run == run]
+    wanted = None if command.table is None else names
+    if run != SWEEP:
+        tell(f"integrating {run}")
+    stream = stream_run(model, run, None, 1, wanted, command.mode, *packing)
     tables = [_Table(layout, command, stream) for layout in stream.layouts]
     style = CsvStyle(
         threads=command.threads, units=command.units, decimal_comma=command.decimal_comma
@@ -145,7 +155,7 @@ def stream_to(
                 (table.add(part, own, place), ()) for place, table in enumerate(tables)
             ]
             if not command.summary_only:
-                rows.append((_verdicts(part, own), ("row",)))
+                rows.append((_verdicts(part, own, run), ("row",)))
                 files.write(rows)
             span = part.analysis.result.row_states.span
             progress(span.first + span.rows)
@@ -173,10 +183,10 @@ def _progress(tell: Tell, rows: int) -> Callable[[int], None]:
     return told
 
 
-def _verdicts(part: PartRows, own: slice) -> Columns:
+def _verdicts(part: PartRows, own: slice, run: str) -> Columns:
     """The part's own rows of the table of verdicts."""
     result = part.analysis.result
-    table = rows_table(result, SWEEP)
+    table = rows_table(result, run)
     first, *others = (column.between(own) for column in table.columns)
     numbers = first.with_values(np.asarray(first.values) + result.row_states.span.first)
     return Columns(table.name, table.title, (numbers, *others))

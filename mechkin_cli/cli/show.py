@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import response
+from mechkin_cli.analysis import ended
 from mechkin_cli.assembly import NEAR
 from mechkin_cli.diagnostics import legible
 from mechkin_cli.errors import WORDS
@@ -49,11 +49,12 @@ from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis import Analysis, Stream
+    from mechkin_cli.analysis import Analysis, Ended, Solvable, Stream
     from mechkin_cli.mechanism import Joint, Problem, Wanted
     from mechkin_cli.structure import SolverGraph
     from mechkin_cli.sweep import Result
     from mechkin_cli.tables import ColumnErrors, Summary
+    from mechkin_cli.units import UnitSystem
 
 
 MOST_ROWS = 60
@@ -86,11 +87,17 @@ def shown_ends(first: Columns, last: Columns, rows: int, folder: Path) -> str:
 def shown_summary(name: str, title: str, summary: Summary) -> str:
     """What stands below a table of which no rows are shown."""
     below = summary_table(name, title, summary)
-    lines = [f"{below.name}: {_one_line(below.title)}", ""]
+    lines = [f"{below.name}: {_one_line(below.title)}"]
     width = shutil.get_terminal_size((80, 24)).columns
+    columns = [["summary", "", *summary.lines]]
+    for each in summary.columns:
+        unit = f"[{each.unit}]" if each.unit else ""
+        columns.append([_one_line(each.label), unit, *summary.texts(each)])
+    for group in _side_by_side(columns, width):
+        lines += ["", *group]
     notes = summary.written_notes(_one_line)
-    said = "\n".join(line for note in notes for line in wrap(f"({note})", width))
-    return "\n".join(lines) + shown_table(below, len(summary.lines)) + said + "\n\n"
+    lines += [line for note in notes for line in wrap(f"({note})", width)]
+    return "\n".join(lines) + "\n\n"
 
 
 def _shown(
@@ -130,6 +137,11 @@ def _grouped(
             cells.insert(HEAD_LINES + gap, "" if number else GAP_MARK)
     if table.summary is not None:
         columns = _with_summary(columns, table.summary)
+    yield from _side_by_side(columns, width)
+
+
+def _side_by_side(columns: list[list[str]], width: int) -> Iterator[list[str]]:
+    """The lines of columns of cells, those that fit side by side group by group."""
     padded = [[cell.rjust(max(map(len, cells))) for cell in cells] for cells in columns]
     for group in _groups(padded, width):
         yield [GAP.join(row).rstrip() for row in zip(*group, strict=True)]
@@ -194,36 +206,40 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     else:
         word = "equilibria" if _rests(analysis) else "response"
         name = f"{name}, {word} {analysis.run}"
-        rows = [("free", _free(analysis))]
+        rows = [("free", _free(analysis.model, analysis.run))]
     rows.append(("loops", _loops(analysis.model.problem, result.graph)))
     if result.mode:
         rows.append(("branch", _branch(result.mode, result.how)))
     verdicts = RunVerdicts.of(result)
-    worst = dict(verdicts.worst)
     if analysis.run != SWEEP:
         off = np.asarray(result.quantity(f"row.{result.measure}").value)
-        if np.isfinite(off).any():
-            worst[result.measure.replace("_", " ")] = float(off[np.isfinite(off)].max())
-    rows += [("rows", _rows(verdicts)), ("worst", _worst(worst))]
+        verdicts.measure(result.measure.replace("_", " "), off)
+    rows += [("rows", _rows(verdicts)), ("worst", _worst(verdicts.worst))]
     if analysis.run == SWEEP and result.is_certified:
         rows.append(("proof", analysis.certificate.words))
     if _rests(analysis):
         rows.insert(-1, ("found", _found(result)))
     elif analysis.run != SWEEP:
-        rows.insert(-1, ("ended", _ended(analysis)))
+        rows.insert(-1, ("ended", _ended(result.units, ended(result), result.rows)))
     if errors:
         rows.append(("errors", errors_line(analysis)))
     return [f"{name} ({file})", *(_line(*row) for row in rows)]
 
 
 def streamed_summary(file: str, stream: Stream) -> list[str]:
-    """The lines of `summary` for a sweep whose rows are not held."""
-    problem, verdicts = stream.model.problem, stream.verdicts
-    graph = stream.sweep.session.graph
-    lines = [("driven", _driven(problem)), ("loops", _loops(problem, graph))]
+    """The lines of `summary` for a run whose rows are not held."""
+    model, verdicts = stream.model, stream.verdicts
+    name, lines = model.name, [("driven", _driven(model.problem))]
+    if stream.run != SWEEP:
+        name = f"{name}, response {stream.run}"
+        lines = [("free", _free(model, stream.run))]
+    lines.append(("loops", _loops(model.problem, stream.source.session.graph)))
     lines += [("branch", _branch(*stream.branch))] if stream.branch[0] else []
-    lines += [("rows", _rows(verdicts)), ("worst", _worst(verdicts.worst))]
-    return [f"{stream.model.name} ({file})", *(_line(*line) for line in lines)]
+    lines.append(("rows", _rows(verdicts)))
+    if stream.run != SWEEP:
+        lines.append(("ended", _ended(model.problem.units, stream.ended, stream.run_rows)))
+    lines.append(("worst", _worst(verdicts.worst)))
+    return [f"{name} ({file})", *(_line(*line) for line in lines)]
 
 
 def files_line(folder: Path, written: Sequence[Path], removed: Sequence[str]) -> str:
@@ -238,9 +254,9 @@ def _line(name: str, text: str) -> str:
     return f"  {name:<9}{text}"
 
 
-def _free(analysis: Analysis) -> str:
+def _free(model: Solvable, run: str) -> str:
     """How many freedoms move under forces, where they start, what is driven and what acts."""
-    own = analysis.model.design.response(analysis.run)
+    own = model.design.response(run)
     noun = "freedom" if len(own.independent) == 1 else "freedoms"
     names = ", ".join(f"{joint}.{name}" for joint, name in own.independent)
     parts = [f"{len(own.independent)} {noun} from {names}"]
@@ -267,24 +283,17 @@ def _found(result: Result) -> str:
     return f"{count} equilibri{'um' if count == 1 else 'a'}: {words}"
 
 
-def _ended(analysis: Analysis) -> str:
+def _ended(units: UnitSystem, end: Ended | None, run_rows: int) -> str:
     """By which stop, or at the last moment asked for, or before it."""
-    result = analysis.result
-    times = result.inputs["time"]
-    unit = result.units.label(TIME)
-    solved = np.flatnonzero(result.solved)
-    if not solved.size:
+    unit = units.label(TIME)
+    if end is None:
         return "before it began"
-    last = int(solved[-1])
-    at = f"at {times[last]:.9g} {unit}"
-    if result.events[last]:
-        return f"{at}: {result.events[last]}"
-    if last == result.rows - 1:
+    at = f"at {end.time:.9g} {unit}"
+    if end.event:
+        return f"{at}: {end.event}"
+    if end.row == run_rows - 1 or end.behind is None:
         return f"{at}, the last moment"
-    assert isinstance(result, response.ResponseResult)
-    report = result.report
-    moment = times[last] if report is None else float(result.units.from_si(report.time, TIME))
-    return f"at {moment:.9g} {unit}: {Status(int(result.status[last + 1])).label}"
+    return f"at {end.over:.9g} {unit}: {end.behind.label}"
 
 
 def _branch(mode: str, how: str) -> str:

@@ -34,6 +34,7 @@ def vibrate(
     input_: list[str] | None = None,
     output: list[str] | None = None,
     frequencies: str | None = None,
+    view: bool = False,
     out: Path | None = None,
     set_: list[str] | None = None,
     json: bool = False,
@@ -49,7 +50,7 @@ def vibrate(
     def files(found: Vibration) -> dict[str, bytes]:
         space = found.state_space(inputs, outputs) if inputs or outputs else None
         told = None if places is None else found.response(places, inputs[0], outputs)
-        return _files(found, space, told)
+        return _files(found, space, told, view)
 
     return answer(
         file,
@@ -101,7 +102,7 @@ def _frequencies(text: str) -> np.ndarray[Any, np.dtype[np.float64]]:
 
 
 def _files(
-    found: Vibration, space: StateSpace | None, told: FrequencyResponse | None
+    found: Vibration, space: StateSpace | None, told: FrequencyResponse | None, view: bool
 ) -> dict[str, bytes]:
     files = {
         f"{stem}.csv": _csv(rows) for stem, rows in vibration_tables(found, space, told).items()
@@ -111,6 +112,8 @@ def _files(
             files["response.svg"] = plots.answer_image(told, "svg")
         except UsageError as missing:  # without matplotlib there is the table alone
             say(f"no picture of the response: {missing}")
+    if view:
+        files["modes.html"] = found.view().html.encode("utf-8")
     return files
 
 

@@ -65,6 +65,7 @@ VIBRATE = Command(
             "text",
             "FROM:TO:COUNT",
         ),
+        Word("view", "Write a page, too, in which the modes are played.", ("--view",)),
         Word("out", "Folder to write to.", ("-o", "--out"), "path", "FOLDER"),
         SET,
         JSON,

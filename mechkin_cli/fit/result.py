@@ -300,7 +300,7 @@ class Fit(Listed):
                 found = self.model.analyze(_names(self.model.problem, texts), tables=[])
             else:
                 known = response_problem(self.model.problem, self.model.design.response(run))
-                found = self.model.respond(run, _names(known, texts), tables=[])
+                found = self.model.run_free(run, _names(known, texts), tables=[])
             self._analyses[run] = found
         return self._analyses[run]
 

@@ -787,6 +787,8 @@ def respond(
     straight: bool,
     lanes: int,
     threads: int,
+    block: int = 0,
+    taker: Callable[[int, int, list[Any]], bool] | None = None,
 ) -> tuple[Any, ...]: ...
 
 class DrivenLaws:

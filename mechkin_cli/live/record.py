@@ -217,7 +217,9 @@ def _why_fixed(problem: Problem, run: str) -> str | None:
         if problem.motion.rest is not None:
             return "coordinates rest in it where the loads balance"
         return None
-    response = problem.responses[run]
+    response = problem.responses.get(run)
+    if response is None:
+        return "it is a mode of vibration about a place"
     if response.search is not None:
         return "its rows are where the loads balance"
     if response.driven:

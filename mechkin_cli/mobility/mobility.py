@@ -41,8 +41,6 @@ from mechkin_cli.show import Listed, Listing
 from mechkin_cli.structure import listed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
@@ -354,24 +352,32 @@ def redundancies(
     return tuple(found)
 
 
+_STRESSED_TOGETHER = 64
+"""Joints whose stresses are compared with all at a time."""
+
+
 def _groups(places: dict[str, list[int]], carried: Floats) -> Iterator[tuple[str, ...]]:
     """Joints and couplings that carry stresses, in groups that do not stress each other."""
     names = list(places)
     starts = [rows[0] for rows in places.values()]
 
-    def touched(number: int) -> NDArray[np.intp]:
-        """The numbers of those that one stresses."""
-        shares = np.abs(carried[places[names[number]]] @ carried.T).max(axis=0)
-        return np.flatnonzero(np.maximum.reduceat(shares, starts) > tolerances.MOBILITY_NO_WRENCH)
-
+    # which ones each stresses, for some of them at a time: all at once would take much memory
+    touched: list[list[int]] = []
+    ends = [*starts[1:], len(carried)]
+    for first in range(0, len(names), _STRESSED_TOGETHER):
+        last = min(first + _STRESSED_TOGETHER, len(names))
+        shares = np.abs(carried[starts[first] : ends[last - 1]] @ carried.T)
+        here = np.array(starts[first:last]) - starts[first]
+        most = np.maximum.reduceat(np.maximum.reduceat(shares, here, axis=0), starts, axis=1)
+        touched += [np.flatnonzero(one).tolist() for one in most > tolerances.MOBILITY_NO_WRENCH]
     seen: set[int] = set()
     for first in range(len(names)):
-        if first in seen or first not in touched(first):
+        if first in seen or first not in touched[first]:
             continue
         group = [first]
         seen.add(first)
         for member in group:
-            more = [k for k in touched(member).tolist() if k not in seen]
+            more = [k for k in touched[member] if k not in seen]
             seen.update(more)
             group += more
         yield tuple(names[k] for k in sorted(group))

@@ -19,7 +19,7 @@ from mechkin_cli.analysis import (
     run_free,
     run_name,
     run_sweep,
-    stream_sweep,
+    stream_run,
 )
 from mechkin_cli.arguments import Setting, a_path, a_text, a_whole_number, settings, texts
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
@@ -250,15 +250,17 @@ class Model(Listed):
         self,
         quantities: Iterable[str] | None = None,
         *,
+        run: str | None = None,
         rows: int = 4096,
         tables: Sequence[str] | None = None,
         mode: str | None = None,
         lanes: int = 0,
         threads: int = 0,
     ) -> Stream:
-        """The sweep block by block, in constant memory: the same numbers as those of `analyze`.
+        """The sweep block by block, or the response named by `run`, in constant memory: the same
+        numbers as those of `analyze` and `respond`.
 
-        Args and errors are those of `analyze`; `rows` of a block, but for the last one.
+        Args and errors are those of these; `rows` of a block, but for the last one.
 
         Returns:
             Gives the blocks one after the other, and says afterwards what the run has to say.
@@ -270,7 +272,7 @@ class Model(Listed):
             >>> [round(float(block["O4.theta"].max()), 3) for block in blocks][:2]
             [37.231, 11.327]
         """
-        return stream_sweep(self, quantities, rows, tables, mode, lanes, threads)
+        return stream_run(self, run, quantities, rows, tables, mode, lanes, threads)
 
     def respond(
         self,
@@ -361,7 +363,12 @@ class Model(Listed):
         )
 
     def run_free(
-        self, name: str, *, tables: Sequence[str] | None = None, mode: str | None = None
+        self,
+        name: str,
+        quantities: Iterable[str] | None = None,
+        *,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
     ) -> Analysis:
         """A response or equilibria by name: what `respond` and `equilibrium` give.
 
@@ -369,7 +376,7 @@ class Model(Listed):
             InvalidFile: too few coordinates are named, or too many.
             UsageError: an unknown run, table or mode.
         """
-        return run_free(self, name, tables=tables, mode=mode)
+        return run_free(self, name, quantities, tables, mode)
 
     def vibration(
         self,

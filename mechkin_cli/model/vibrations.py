@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
+from mechkin_cli import view
+from mechkin_cli.analysis import Analysis, Solvable
 from mechkin_cli.arguments import a_whole_number, texts
-from mechkin_cli.vibration import Vibration, freed
+from mechkin_cli.expressions import parse
+from mechkin_cli.tables import ColumnLayout, TableLayout
+from mechkin_cli.vibration import Vibration, freed, played
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from os import PathLike
+    from pathlib import Path
 
-    from mechkin_cli.analysis import Analysis, Design
+    from mechkin_cli.analysis import Design
     from mechkin_cli.arguments import Setting
 
 
-class Moving(Protocol):
+class Moving(Solvable, Protocol):
     """What is asked of a model."""
 
     @property
@@ -59,7 +67,27 @@ def vibration(
         other = model.with_parameters({parameter: float(own)})
         return vibration(other, name, row, coordinates, held)
 
-    return Vibration(freed(analysis.result, row, coordinates, held), again)
+    place = freed(analysis.result, row, coordinates, held)
+
+    def shown(found: Vibration, path: str | PathLike[str] | None) -> view.Page | Path:
+        page, _ = view.view_page(list(modes(found)), modes=False)
+        return view.Page(page) if path is None else view.write_view(path, page)
+
+    def modes(found: Vibration) -> Iterator[Analysis]:
+        for number, (shape, frequency) in enumerate(
+            zip(found.shapes.T, found.frequencies, strict=True)
+        ):
+            parts = np.asarray(shape.real), np.asarray(shape.imag)
+            rows = played(place, analysis.result, row, parts, float(frequency))
+            name = f"mode {number + 1}, {frequency:.4g} Hz"
+            yield Analysis(model, (_swung(name, found.coordinates),), rows, name)
+
+    return Vibration(place, again, shown)
+
+
+def _swung(run: str, coordinates: Sequence[str]) -> TableLayout:
+    columns = tuple(ColumnLayout(name, parse(name)) for name in ("time", *coordinates))
+    return TableLayout(run, "Coordinates over a period", columns, run=run)
 
 
 def _first_run(model: Moving) -> str:

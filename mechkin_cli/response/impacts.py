@@ -21,13 +21,8 @@ from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import ORDERS, CrossingEnd, Limit, eliminated, is_angle
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.response.integration import (
-    Beginning,
-    Impact,
-    MotionEnd,
-    MotionRows,
-    Rebound,
-)
+from mechkin_cli.response.integration import Beginning, Impact, Rebound
+from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.session import Ask, Chart
 from mechkin_cli.units import FORCE, MOMENT, TIME
 

@@ -7,9 +7,8 @@ gets a verdict, what was measured, and the cure (`ending`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from enum import IntEnum
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,11 +24,11 @@ from mechkin_cli.mechanism import (
     rubbing_words,
 )
 from mechkin_cli.plan import Demand, Layout, kink_laws
-from mechkin_cli.record import NamedTuple, dataclass
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.response.report import Fault, MotionEnd, MotionReport, MotionRows, motion_of
 from mechkin_cli.session import (
     RESIDUAL_TESTS,
     Ask,
-    Chart,
     Coordinate,
     Packing,
     RowInputs,
@@ -96,97 +95,6 @@ class Rebound(NamedTuple):
     others: Sequence[Mapping[tuple[str, str], float]] = ()
 
 
-class MotionEnd(IntEnum):
-    """How a motion ended, as the kernel's `LaneEnd`."""
-
-    DONE = 0
-    STOPPED = 1
-    STUCK = 2
-    STEP_LIMIT = 3
-    HELD = 4
-
-
-class Fault(IntEnum):
-    """Why no step could be taken: bits of the kernel's `StageFlag`."""
-
-    NOT_CLOSED = 1
-    OFF_BRANCH = 2
-    SINGULAR_INERTIA = 4
-    UNDEFINED_LOAD = 8
-    FRICTION = 16
-    UNDEFINED_STOP = 32
-    NOT_FINITE = 255
-
-
-class MotionReport(NamedTuple):
-    """How a motion ended.
-
-    Attributes:
-        stop: that ended it, or that had no value where it ended; -1: none.
-        joints: numbers of the frictions that it ended by.
-        energy: largest kinetic energy at the ends of its steps (kg, length units, s).
-        lightest: least inertia at the last of them, in parts of that at the start.
-        growth: accelerations there, in parts of the rates (1/s).
-        met: how often the switch `which` was met.
-        step: the last one, s.
-        value: largest of that switch.
-        end: the kernel's verdict.
-        fault: of the last refused step.
-        which: the switch that held it, or that was met most often when steps ran out.
-        stiff, stiff_from: whether and from when (s) the implicit method took over.
-        time: the last one, s.
-        rows, evaluations, steps, rejections: their counts.
-        last: the last states.
-        crossings: the branch points that were passed (time in s, states).
-        touches: stops (numbers) whose value came to `at` and went back, and when (s).
-        branch_point: the states at the one that it has ended next to; empty: none.
-        singular: whether short steps were refused there as off the branch.
-    """
-
-    stop: int
-    joints: list[int]
-    energy: float
-    lightest: float
-    growth: float
-    met: int
-    step: float
-    value: float
-    end: MotionEnd
-    fault: int
-    which: int
-    stiff: bool
-    stiff_from: float
-    time: float
-    rows: int
-    evaluations: int
-    steps: int
-    rejections: int
-    last: list[float]
-    crossings: list[tuple[float, list[float]]]
-    touches: list[tuple[int, float]]
-    branch_point: list[float]
-    singular: bool
-
-
-@dataclass(frozen=True)
-class MotionRows:
-    """Rows of one motion in kernel units: states (states, rows), the chart about each, turns of
-    cut joints (slots, rows), work put in and lost (2, rows) in kg, length units and s, and the
-    kernel's flags (rows,). Rows that were not reached hold nan."""
-
-    report: MotionReport
-    states: Floats
-    chart: Chart
-    turns: Floats
-    work: Floats
-    flags: NDArray[np.uint8]
-
-    @property
-    def count(self) -> int:
-        """Rows that there are: those that were reached, and one where a stop lies between rows."""
-        return self.report.rows + bool(np.isfinite(self.states[:1, self.report.rows]).all())
-
-
 WatchedStop = tuple[int, int, int, float, int, int]
 """What ends a motion, by a value that is watched: kind, direction, times, at, lengths, rates.
 
@@ -213,6 +121,11 @@ def with_loads(session: Session, problem: Problem) -> Session:
     return Session(problem, structure, size=session.size, packing=session.packing)
 
 
+Taker = Callable[[int, int, list["NDArray[Any]"]], bool]
+"""Takes a block of rows, the number of its first one and how many they are, out of the kernel's
+arrays, which the next ones are then written into; False: no more are wanted."""
+
+
 def integrate(
     starts: Sequence[tuple[Plan, Beginning]],
     begin: float,
@@ -225,12 +138,16 @@ def integrate(
     straight: bool = False,
     packing: Packing,
     method: int = 0,
+    block: int = 0,
+    taker: Taker | None = None,
 ) -> list[MotionRows]:
     """Integrates motions of plans of one structure, each from its beginning, packed into lanes,
     from time `begin` (s) over the rows' `times` (rows,).
 
     `stops` go with the values that the plans watch, in order; `driven` with their inputs;
-    `straight`: branch points are passed along the smooth continuation.
+    `straight`: branch points are passed along the smooth continuation. A `taker` takes the rows of
+    one motion in blocks of so many as they are reached, all but the last of them, which are given
+    back: their first one has the number `report.first`.
 
     Raises:
         ValueError: times that do not rise from `begin` on.
@@ -257,13 +174,13 @@ def integrate(
         # one motion needs no more than the narrowest packs
         lanes=width(packing.lanes) if packing.lanes or len(starts) > 2 else 2,
         threads=threads_for(len(starts), packing.threads),
+        block=block,
+        taker=taker,
     )
     motions = []
     for number, fields in enumerate(reports):
-        states, direction, rates, seconds, turns, fourth, work, flags = (a[number] for a in arrays)
         report = MotionReport(**{**fields, "end": MotionEnd(fields["end"])})
-        chart = Chart(direction, rates, seconds, fourth)
-        motions.append(MotionRows(report, states, chart, turns, work, flags))
+        motions.append(motion_of(report, [array[number] for array in arrays]))
     return motions
 
 
@@ -567,7 +484,7 @@ def ending(
         times = [time for touched, time in report.touches if touched == number]
         if times and not isinstance(stop, SlopeEnd):
             notes.append(_touched(stop, [_time(units, time) for time in times]))
-    if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
+    if report.end in (MotionEnd.DONE, MotionEnd.STOPPED, MotionEnd.UNDER_WAY):
         return Status.ok, notes
     at = _time(units, report.time)
     status, why = reason(free, response, report)

@@ -17,7 +17,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import SlopeEnd
 from mechkin_cli.record import replace
-from mechkin_cli.response.integration import MotionEnd, MotionRows
+from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.sweep import bends, jumps_between, place_text, size_text, value_at
 
 if TYPE_CHECKING:

@@ -24,14 +24,8 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.plan import FrictionTold, demand_of
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.response.integration import (
-    Beginning,
-    MotionEnd,
-    MotionRows,
-    driven_laws,
-    integrate,
-    watched_stop,
-)
+from mechkin_cli.response.integration import Beginning, driven_laws, integrate, watched_stop
+from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.session import Ask, Chart, KernelInputs
 from mechkin_cli.structure import holding
 

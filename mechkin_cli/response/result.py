@@ -22,7 +22,7 @@ from mechkin_cli.mechanism import (
     response_quantities,
 )
 from mechkin_cli.plan import Demand
-from mechkin_cli.record import replace
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response.impulses import impact_table
 from mechkin_cli.session import RowInputs
 from mechkin_cli.sweep import Result, SweepRows
@@ -31,7 +31,8 @@ from mechkin_cli.units import TIME
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.mechanism import Amount, ResponseProblem, Wanted
-    from mechkin_cli.response.integration import Impact, MotionReport, Rebound
+    from mechkin_cli.response.integration import Impact, Rebound
+    from mechkin_cli.response.report import MotionReport
     from mechkin_cli.session import Chart, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.tables import Columns
@@ -62,6 +63,17 @@ OTHER_LOADS = 100
 """The first shift that stands for other loads; those before it are parts of the null space."""
 
 ENERGIES = ("row.kinetic_energy", "row.potential_energy")
+
+
+class Energies(NamedTuple):
+    """What a balance of energies over many rows is measured by, J: kinetic and potential energy of
+    the first row with a position; the largest part of the balance, and the largest potential energy
+    of any row."""
+
+    kinetic: float
+    potential: float
+    largest: float
+    level: float
 
 
 class FreeResult(Result):
@@ -185,6 +197,8 @@ class ResponseResult(FreeResult):
         response: the file's.
         report: how the motion ended.
         rebounds: at limits of coordinates, in order.
+
+    `energies` are those of the whole run, where these are some of its rows.
     """
 
     def __init__(
@@ -206,6 +220,7 @@ class ResponseResult(FreeResult):
         self.events, self.report = tuple(events), report
         self.rebounds = tuple(rebounds)
         self.other_loads: tuple[OtherLoads, ...] = ()
+        self.energies: Energies | None = None
 
     def take_others(self, others: Sequence[OtherLoads]) -> None:
         """Takes loads that are as good as those of the rows, as of limits that share a freedom:
@@ -246,7 +261,7 @@ class ResponseResult(FreeResult):
         """As of a sweep; and the start's coordinates, which the first row has as the file writes
         them."""
         rates = dict(super().input_rates)
-        if not self.solved[:1].all():
+        if self.row_states.span.first or not self.solved[:1].all():
             return rates
         for one in self.response.start:
             for name, first in ((one.name, one.value), (one.name + ORDERS[1], one.rate)):
@@ -302,26 +317,43 @@ class ResponseResult(FreeResult):
     def energy_error(self) -> Floats:
         """|T + V - T0 - V0 - work + dissipated| beyond the rounding of V, in parts of the largest
         of them over all rows and of T between them (rows,); nan where nothing moves or works."""
+        kinetic, potential = self._mechanical
+        work, lost = self.exchanged
+        found = self.energies or self.energies_with(None)
+        if found is None or self.report is None:
+            return self._nothing
+        length = self.session.layout.length
+        largest = max(found.largest, length * length * self.report.energy)
+        if not largest > 0.0:
+            return self._nothing
+        gained = potential - found.potential
+        missing = ((kinetic - found.kinetic) + gained) - (work - lost)
+        rounding = tolerances.ENERGY_ROUNDING * found.level
+        error: Floats = np.maximum(np.abs(missing) - rounding, 0.0) / largest
+        return error
+
+    @property
+    def _mechanical(self) -> tuple[Floats, Floats]:
+        """Kinetic and potential energy of the rows (rows,), J."""
         kinetic, potential = (
             np.asarray(super(ResponseResult, self).quantity(name).value, dtype=np.float64)
             for name in ENERGIES
         )
-        work, lost = self.exchanged
+        return kinetic, potential
+
+    def energies_with(self, before: Energies | None) -> Energies | None:
+        """The energies of these rows and of those before them; None without any."""
         solved = np.flatnonzero(self.solved)
         if not solved.size:
-            return self._nothing
-        first = solved[0]
-        gained = potential - potential[first]
-        parts = np.abs([kinetic, gained, work, lost])[:, solved]
-        assert self.report is not None
-        length = self.session.layout.length
-        largest = max(float(parts.max()), length * length * self.report.energy)
-        if not largest > 0.0:
-            return self._nothing
-        missing = ((kinetic - kinetic[first]) + gained) - (work - lost)
-        rounding = tolerances.ENERGY_ROUNDING * float(np.abs(potential[solved]).max())
-        error: Floats = np.maximum(np.abs(missing) - rounding, 0.0) / largest
-        return error
+            return before
+        kinetic, potential = (energy[solved] for energy in self._mechanical)
+        first = before or Energies(float(kinetic[0]), float(potential[0]), 0.0, 0.0)
+        work, lost = self.exchanged[:, solved]
+        parts = np.abs([kinetic, potential - first.potential, work, lost])
+        return first._replace(
+            largest=max(first.largest, float(parts.max())),
+            level=max(first.level, float(np.abs(potential).max())),
+        )
 
     @property
     def _loads(self) -> ResponseProblem:

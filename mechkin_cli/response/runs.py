@@ -8,7 +8,6 @@ chosen as a sweep's first row is. Rates may be those of other coordinates, too (
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,17 +16,14 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
     CrossingEnd,
-    DrivenInput,
-    Moments,
     MotionInputs,
-    dimension_of,
     eliminated,
     read_for,
     response_problem,
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
-from mechkin_cli.record import dataclass, replace
+from mechkin_cli.record import replace
 from mechkin_cli.response.impacts import (
     ImpactAt,
     impact_notes,
@@ -37,17 +33,16 @@ from mechkin_cli.response.impacts import (
 )
 from mechkin_cli.response.integration import (
     Beginning,
-    MotionEnd,
-    MotionRows,
     Rebound,
+    Taker,
     driven_laws,
-    ending,
     free_session,
     integrate,
     watched_stop,
     with_loads,
 )
-from mechkin_cli.response.jumps import at_jump, before_jump, slope_ends
+from mechkin_cli.response.jumps import at_jump, slope_ends
+from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.response.resting import (
     Contact,
     RestingMotion,
@@ -55,7 +50,8 @@ from mechkin_cli.response.resting import (
     with_contacts,
 )
 from mechkin_cli.response.result import ENERGIES, FreeResult, ResponseResult
-from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, input_unit, turn_count
+from mechkin_cli.response.rows import Prepared, refuse_many_rows, rows_of
+from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
     SweepRows,
@@ -69,12 +65,9 @@ from mechkin_cli.sweep import (
     row_notes,
     unfounded_in_motion,
 )
-from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.assembly import AssemblyStart
-    from mechkin_cli.kernel._kernel import DrivenLaws
     from mechkin_cli.mechanism import Limit, Problem, ResponseProblem, Wanted
     from mechkin_cli.show import Floats
 
@@ -176,84 +169,6 @@ def solve_rates(
     return np.array([*solved, *rates[free:]])
 
 
-def rows_problem(
-    free: Session, response: ResponseProblem, laws: DrivenLaws | None, moved: MotionRows, count: int
-) -> Problem:
-    """The problem whose motion has the first `count` rows, a stop's moment among them."""
-    every = response.moments
-    if count <= moved.report.rows or moved.count <= moved.report.rows:
-        moments = Moments(every.values[:count], every.written[:count])
-        driven = tuple(_part(item, count) for item in response.driven)
-    else:
-        end = moved.report.time
-        written = float(free.problem.units.from_si(end, TIME))
-        values = np.append(every.values[: count - 1], end)
-        moments = Moments(values, np.append(every.written[: count - 1], written))
-        at = [] if laws is None else laws.at(end)
-        driven = tuple(
-            _stopped(free, _part(item, count - 1), at[number])
-            for number, item in enumerate(response.driven)
-        )
-    if laws is not None and response.course is not None:
-        edges = response.course.edges[1:] * float(free.problem.units.to_si(1.0, TIME))
-        driven = _before_jumps(free, edges, laws, driven, moments)
-    return free.problem.moved(MotionInputs(driven, count, moments, response.course))
-
-
-def _before_jumps(
-    free: Session,
-    edges: Floats,
-    laws: DrivenLaws,
-    driven: tuple[DrivenInput, ...],
-    moments: Moments,
-) -> tuple[DrivenInput, ...]:
-    """Accelerations of laws where a piece of one ends at a row, at an edge (s): those that the
-    motion came with, as the free coordinates have them there."""
-    rows = [k for k in range(1, moments.values.size) if moments.values[k] in edges]
-    if not rows:
-        return driven
-    accelerations = [item.accelerations.copy() for item in driven]
-    written = [item.written_orders.copy() for item in driven]
-    for row in rows:
-        at = laws.at(float(np.nextafter(moments.values[row], moments.values[0])))
-        for number, item in enumerate(driven):
-            second = at[number][2] * input_unit(free.layout, item)
-            dimension = dimension_of(item.coordinate) / TIME**2
-            accelerations[number][row] = second
-            written[number][2, row] = float(free.problem.units.from_si(second, dimension))
-    return tuple(
-        item._replace(accelerations=a, written_orders=w)
-        for item, a, w in zip(driven, accelerations, written, strict=True)
-    )
-
-
-def _part(item: DrivenInput, count: int) -> DrivenInput:
-    return item._replace(
-        values=item.values[:count],
-        rates=item.rates[:count],
-        accelerations=item.accelerations[:count],
-        jerks=item.jerks[:count],
-        written_orders=item.written_orders[:, :count],
-    )
-
-
-def _stopped(free: Session, item: DrivenInput, at: tuple[float, float, float]) -> DrivenInput:
-    """With one row more, where the motion was stopped; `at` in kernel units."""
-    unit, units = input_unit(free.layout, item), free.problem.units
-    last = [value * unit for value in at] + [nan]
-    dimension = dimension_of(item.coordinate)
-    written = [
-        float(units.from_si(value, dimension / TIME**order)) for order, value in enumerate(last)
-    ]
-    return item._replace(
-        values=np.append(item.values, last[0]),
-        rates=np.append(item.rates, last[1]),
-        accelerations=np.append(item.accelerations, last[2]),
-        jerks=np.append(item.jerks, last[3]),
-        written_orders=np.concatenate([item.written_orders, np.array(written)[:, None]], axis=1),
-    )
-
-
 ANY_PACKING = Packing()
 """As many lanes and threads as pay."""
 
@@ -283,19 +198,6 @@ def respond(
     (result,) = integrated([prepared], packing)
     read(result, quantities)
     return result
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """A response before it is integrated: the session that its assembly was `chosen` in, that of
-    the `free` motion, and how it begins; None where it cannot."""
-
-    response: ResponseProblem
-    chosen: Session
-    start: AssemblyStart
-    free: Session
-    begun: Beginning | None
-    driven: DrivenLaws | None
 
 
 def prepare(
@@ -341,13 +243,14 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
     results: dict[int, ResponseResult] = {}
     groups: dict[object, list[int]] = {}
     for number, one in enumerate(variants):
+        refuse_many_rows(one)
         if one.begun is None:
             results[number] = _nothing(one)
         else:
             groups.setdefault(_shared(one, number), []).append(number)
     for numbers in groups.values():
         together = [variants[number] for number in numbers]
-        for number, rows in zip(numbers, _integrated(together, packing), strict=True):
+        for number, rows in zip(numbers, integrated_rows(together, packing), strict=True):
             one = variants[number]
             results[number] = _to_jumps(one, _rebounding(one, rows, packing), packing)
     return [results[number] for number in range(len(variants))]
@@ -367,7 +270,11 @@ def _shared(one: Prepared, number: int) -> object:
     )
 
 
-def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRows]:
+def integrated_rows(
+    together: Sequence[Prepared], packing: Packing, block: int = 0, taker: Taker | None = None
+) -> list[MotionRows]:
+    """The motions of variants that share what the kernel takes once, as they begin; the `taker` is
+    that of `integrate`."""
     first = together[0]
     response, times = first.response, first.response.moments.values
     starts = []
@@ -388,6 +295,8 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
         fixed_step=response.fixed_step,
         straight=first.chosen.problem.assembly.straight,
         packing=packing,
+        block=block,
+        taker=taker,
     )
 
 
@@ -400,7 +309,7 @@ def _to_jumps(one: Prepared, result: ResponseResult, packing: Packing) -> Respon
     response = replace(one.response, stops=(*one.response.stops, *ends))
     free = with_loads(one.free, replace(one.free.problem, response=response))
     again = replace(one, response=response, free=free)
-    (moved,) = _integrated([again], packing)
+    (moved,) = integrated_rows([again], packing)
     return _rebounding(again, at_jump(again.chosen, response, moved), packing)
 
 
@@ -525,44 +434,6 @@ def _onward(
         if not (is_near and is_stuck):
             return found
     return moved(first, times)
-
-
-def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
-    """The rows with their verdicts, before anything is read: all of them, or up to a stop."""
-    moved = before_jump(one.response, moved)
-    response, chosen, free, report = one.response, one.chosen, one.free, moved.report
-    stopped = report.end is MotionEnd.STOPPED
-    count = moved.count if stopped else response.rows
-    if stopped and report.rows:
-        # a stop at the moment of the last row before it has that row
-        row = float(response.moments.values[report.rows - 1])
-        count -= abs(report.time - row) <= tolerances.SAME_MOMENT * abs(row)
-    part = slice(0, count)
-    reached = np.arange(count) < moved.count
-    rows = SweepRows.without_guesses(free.layout.states, 0, count)
-    rows.states = np.where(reached, moved.states[:, part], 0.0)
-    rows.reached, rows.nodes = reached, report.steps
-    # no whole turns of the tree's angles, whose states have them
-    tree = np.zeros((len(free.structure.tree_slots), count))
-    rows.turns = np.concatenate([moved.turns[:, part], tree])
-    status, notes = ending(chosen, free, response, report, np.array(report.last))
-    rows.status[~reached] = status
-    rows.diagnostics += notes
-    energy = free.layout.length * free.layout.length
-    events = [""] * count
-    if stopped:
-        events[-1] = response.stops[report.stop].words
-    return ResponseResult(
-        free.moved(rows_problem(free, response, one.driven, moved, count)),
-        one.start,
-        rows,
-        chosen=chosen,
-        chart=Chart(*(np.where(reached, array, 0.0) for array in moved.chart.at(part))),
-        work=np.where(reached, energy * moved.work[:, part], np.nan),
-        events=events,
-        response=response,
-        report=report,
-    )
 
 
 def _nothing(one: Prepared) -> ResponseResult:

@@ -267,7 +267,7 @@ class Shifting:
             if self.is_sweep:
                 analysis = varied.analyze(self.asked, tables=[])
             else:
-                analysis = varied.respond(self.analysis.run, tables=[])
+                analysis = varied.run_free(self.analysis.run, tables=[])
         except (InvalidFile, UsageError):
             raise NotRepeated(ONE_SIDE) from None
         if analysis.result.rows != self.result.rows:

@@ -39,6 +39,7 @@ from mechkin_cli.structure import (
     UnsolvableGraph,
     build_graph,
     connections_of,
+    is_too_large,
     middle_and_size,
     reduce,
     whole_link,
@@ -168,7 +169,7 @@ def _structure(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Struct
         found = graph()
     except UnsolvableGraph:
         return None
-    if any(block.equations > tolerances.MOST_EQUATIONS for block in found.blocks):
+    if is_too_large(found):
         return None
     # no load says where links stand
     return Structure(Layout(replace(mechanism, loads=(), frictions=()), found), tuple(found.driven))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "forces": "Derivative DrivenAt Forces ForcesAt FreePlace differentiated summed",
+        "forces": "Derivative DrivenAt Forces ForcesAt FreePlace combined differentiated summed",
         "rest": "rested",
         "result": "EquilibriumResult",
         "runs": "balance balanced",

@@ -63,14 +63,19 @@ class Balancing:
         chosen: the session of one row, among whose inputs are the coordinates that are free.
         coordinates: these (joint, coordinate), which fix a place.
         forces: of what is free.
+        measured: whether what balances is measured by each load alone, which takes a plan for each;
+            else by the sum of all.
     """
 
     chosen: Session
     coordinates: list[Coordinate]
     forces: Forces
+    measured: bool = True
 
     @classmethod
-    def of(cls, chosen: Session, coordinates: list[Coordinate]) -> Balancing:
+    def of(
+        cls, chosen: Session, coordinates: list[Coordinate], *, measured: bool = True
+    ) -> Balancing:
         """The forces where some inputs of a session of one row are free."""
         problem, motion = chosen.problem, chosen.problem.motion
         driven = tuple(
@@ -79,11 +84,13 @@ class Balancing:
         motion = motion._replace(inputs=driven, leader=None, rest=None)
         free = free_session(chosen, coordinates)
         free = replace(free.moved(problem.moved(motion)), packing=chosen.packing)
-        return cls(chosen, coordinates, Forces(free, DrivenAt.row(free)))
+        return cls(chosen, coordinates, Forces(free, DrivenAt.row(free)), measured)
 
     @cached_property
     def alone(self) -> tuple[Forces, ...]:
-        """The forces of each load alone, and of all weights."""
+        """The forces of each load alone, and of all weights; of all where these are not wanted."""
+        if not self.measured:
+            return (self.forces,)
         driven = self.forces.driven
         return tuple(Forces(one, driven) for one in _alone(self.forces.session))
 
@@ -192,12 +199,12 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
             return Search(place, forces, 0.0, SearchEnd.NO_FORCES, steps)
         forces, matrix = found
         size, slope = float(np.max(np.abs(forces))), float(np.max(np.abs(matrix)))
+        wanted = newton_step(matrix, forces)
         near = length <= tolerances.EQUILIBRIUM_STEP
         if near or size <= tolerances.EQUILIBRIUM_ROUNDING * max(largest, slope):
-            return Search(place, forces, slope, SearchEnd.FOUND, steps)
+            return Search(place, forces, max(largest, slope), SearchEnd.FOUND, steps)
         if steps == tolerances.MOST_EQUILIBRIUM_STEPS:
             return Search(place, forces, slope, SearchEnd.STEPS, steps)
-        wanted = newton_step(matrix, forces)
         length = _length(wanted)
         if tolerances.EQUILIBRIUM_REACH < length <= tolerances.WILD_STEP:
             wanted = wanted * (tolerances.EQUILIBRIUM_REACH / length)

@@ -20,7 +20,7 @@ from mechkin_cli.mechanism import dimension_of, eliminated
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.row_notes import RowSet
-from mechkin_cli.session import input_number, input_text, input_unit
+from mechkin_cli.session import Continued, input_number, input_text, input_unit
 from mechkin_cli.statics.forces import summed
 from mechkin_cli.statics.newton import Balancing, search
 from mechkin_cli.statics.places import Place, Statics, eigen
@@ -47,14 +47,20 @@ def rested(session: Session) -> Session:
         # the sweep says why there is no first assembly
         return _moved(session, rest._replace(solved=True), session.inputs.values)
     found = _Branch(sized, rest).follow(start.row, start.state)
-    return _moved(session, found.rest, found.values)
+    moved = _moved(session, found.rest, found.values)
+    if found.start is None or (session.base is None and session.first is None):
+        return moved
+    # an assembly that is continued stands where the coordinates have not come to rest yet
+    return replace(moved, base=None, first=found.start)
 
 
 class _Rows(NamedTuple):
-    """The inputs of all rows (inputs, rows) in kernel units, and what is known of them."""
+    """The inputs of all rows (inputs, rows) in kernel units, what is known of them, and the place
+    from which they were followed."""
 
     rest: Rest
     values: Floats
+    start: Continued | None = None
 
 
 def _moved(session: Session, rest: Rest, values: Floats) -> Session:
@@ -97,14 +103,19 @@ class _Branch:
         """All rows, from the equilibrium near an assembly at a row on."""
         driven = self.session.problem.motion.driven
         one = self.session.part(row, row)
-        balancing = Balancing.of(one, [driven[k] for k in self.free])
         own = Statics(one, self.free)
         start = own.place(self.values[:, row], state)
-        try:
-            found = search(balancing, balancing.charted(own, start))
-        except ValueError:
-            found = None
-        if found is None or not found.found:
+        # most are found without knowing what each load does alone
+        for measured in (False, True):
+            coordinates = [driven[k] for k in self.free]
+            balancing = Balancing.of(one, coordinates, measured=measured)
+            try:
+                found = search(balancing, balancing.charted(own, start))
+            except ValueError:
+                return self._nowhere(row)
+            if found.found:
+                break
+        else:
             return self._nowhere(row)
         place = balancing.uncharted(own, found.place)
         last, after = self._march(row, place, 1)
@@ -116,7 +127,7 @@ class _Branch:
         ends = tuple(end or _NO_END for end in (before, after))
         notes = self._notes(first, last)
         rest = self.rest._replace(solved=True, first=first, last=last, ends=ends, notes=notes)
-        return _Rows(rest, self.values)
+        return _Rows(rest, self.values, Continued(place.state, row))
 
     def _nowhere(self, row: int) -> _Rows:
         text = f"no place was found at which the loads balance in row {row + 1}"
@@ -145,9 +156,9 @@ class _Branch:
                 known += rows.tolist()
                 self.unstable[rows] = _least(matrix) < 0.0
                 if chords <= tolerances.FEW_CHORDS:
-                    block = min(block + max(block // 2, 1), tolerances.MOST_REST_ROWS)
+                    block = min(2 * block, tolerances.MOST_REST_ROWS)
                 elif chords > tolerances.MANY_CHORDS:
-                    block = max(block - block // 4, 1)
+                    block = max(block - block // 3, 1)
                 continue
             if block > 1:
                 block //= 2
@@ -171,13 +182,11 @@ class _Branch:
         return Status.branch_lost, Diagnostic("rest-lost", "error", text, hint=hint)
 
     def _predicted(self, known: list[int], rows: Floats) -> Floats:
-        """The coordinates at rest (free, rows), by a parabola through rows that are known."""
-        near = known[-1]
-        apart = max(1, min(len(known) - 1, len(rows)) // 2)
-        points = [near]
-        for back in (apart, 2 * apart):
-            if back < len(known):
-                points.append(known[-1 - back])
+        """The coordinates at rest (free, rows), by a polynomial through rows that are known."""
+        most = tolerances.REST_POINTS - 1
+        apart = max(1, min(len(known) - 1, len(rows)) // most)
+        backs = [apart * k for k in range(most + 1)]
+        points = [known[-1 - back] for back in backs if back < len(known)]
         found = np.zeros((len(self.free), len(rows)))
         for k in points:
             weight = np.ones(len(rows))
@@ -192,6 +201,14 @@ class _Branch:
         steps = self._differences()
         found = self.statics.beside(place, steps, np.full(steps.shape[1], time))
         return self._differentiated(found.forces) if found.good.all() else None
+
+    def _far(self, place: Place, time: float, near: Floats) -> Floats | None:
+        """The stiffness at the end of a stretch; None where it has none, or where its determinant
+        has another sign than at the beginning."""
+        found = self._slopes(place, time)
+        if found is None or _determinant(found) * _determinant(near) <= 0.0:
+            return None
+        return found
 
     def _differences(self) -> Floats:
         count, step = len(self.free), tolerances.NEWTON_DIFFERENCE
@@ -217,10 +234,13 @@ class _Branch:
         if way.reached <= rows.size:
             return None
         states, turns, times = way.states[:, 1:], way.turns[:, 1:], self.times[rows]
-        last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
-        far = self._slopes(last, float(times[-1]))
-        if far is None or _determinant(far) * _determinant(matrix) <= 0.0:
-            return None
+        far = matrix
+        if len(self.free) > 1:
+            last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
+            known_far = self._far(last, float(times[-1]), matrix)
+            if known_far is None:
+                return None
+            far = known_far
         part = np.arange(1, rows.size + 1) / rows.size
         slopes = matrix[:, :, None] * (1.0 - part) + far[:, :, None] * part
         predicted = inputs[self.free].copy()
@@ -234,8 +254,8 @@ class _Branch:
             if step is not None:
                 # what the last step left tells of the slopes (C. G. Broyden, Mathematics of
                 # Computation 19, 1965)
-                square = summed(step * step)
-                by = np.where(square > 0.0, step / np.where(square > 0.0, square, 1.0), 0.0)
+                squares = summed(step * step)
+                by = np.where(squares > 0.0, step / np.where(squares > 0.0, squares, 1.0), 0.0)
                 slopes = slopes + found.forces[:, None, :] * by[None, :, :]
             step = _solved(slopes, -found.forces)
             if step is None:
@@ -256,9 +276,21 @@ class _Branch:
             off > tolerances.REST_SMALL
         ):
             return None
-        self.values[:, rows] = inputs
         # the states are those before the last step, of the size of rounding
-        return Place(inputs[:, -1], states[:, -1], turns[:, -1]), far, chords
+        last = Place(inputs[:, -1], states[:, -1], turns[:, -1])
+        if len(self.free) == 1:
+            # of one freedom the steps have told the slope, where there were any
+            told = float(np.abs(inputs[self.free, -1] - predicted[:, -1])[0])
+            far = slopes[:, :, -1]
+            if not told > tolerances.TELLING_STEP:
+                known_far = self._far(last, float(times[-1]), matrix)
+                if known_far is None:
+                    return None
+                far = known_far
+            elif far[0, 0] * matrix[0, 0] <= 0.0:
+                return None
+        self.values[:, rows] = inputs
+        return last, far, chords
 
     def _notes(self, first: int, last: int) -> tuple[Diagnostic, ...]:
         """Which rows are unstable equilibria."""

@@ -60,7 +60,7 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
     matrix, nothing = derivative.matrix, np.nan
     if not np.isfinite(matrix).all():
         return Verdict(Stability.UNKNOWN, coordinates, nothing, 0, nothing)
-    size = max(float(np.max(np.abs(matrix))), found.largest, balancing.largest(place))
+    size = max(float(np.max(np.abs(matrix))), found.largest)
     error = derivative.error + tolerances.MARGINAL_STIFFNESS * size
     off = float(np.max(np.abs(matrix - matrix.T)))
     unsymmetric = off > tolerances.UNSYMMETRIC_STIFFNESS * size

@@ -21,7 +21,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "build": "build_graph",
         "graph": "Block Loop SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
-        "holding is_redundant listed structure_of",
+        "holding is_redundant is_too_large listed most_equations structure_of",
         "network": "connections_of reduce whole_link",
         "rank": "Rates middle_and_size",
     },

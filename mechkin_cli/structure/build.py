@@ -14,7 +14,13 @@ from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechani
 from mechkin_cli.structure import graph as errors
 from mechkin_cli.structure.assur import assur_groups, coupled_groups
 from mechkin_cli.structure.cut_joints import NothingCloses, closing_names
-from mechkin_cli.structure.graph import Block, Loop, SolverGraph, TreeEdge
+from mechkin_cli.structure.graph import (
+    Block,
+    Loop,
+    SolverGraph,
+    TreeEdge,
+    neighbours_together,
+)
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import (
     Connection,
@@ -30,6 +36,7 @@ from mechkin_cli.structure.network import (
     reduce,
 )
 from mechkin_cli.structure.rank import Rates, middle_and_size
+from mechkin_cli.tolerances import FULL_EQUATIONS
 
 Freedom = tuple[int, int]
 
@@ -131,6 +138,9 @@ def lay_blocks(
         solved.update(unknowns)
         for own, freed in _with_couplings_apart(some, unknowns, edges):
             start = len(laid)
+            if len(freed) > FULL_EQUATIONS:
+                together, freed = neighbours_together([loop for _, loop in own], freed)
+                own = [own[k] for k in together]
             laid.extend(own)
             count = sum(closing.equations for closing, _ in own)
             blocks.append(Block(tuple(range(start, len(laid))), freed, count))

@@ -4,7 +4,7 @@ What is placed before a group counts as one vertex (`closings_of`; docs/numerics
 joints). The loops of a group are closed at the joints with most freedoms: least equations, a
 minimum spanning tree by freedoms (Kruskal 1956). Among equals the loops are split evenly at their
 cut joints; then the first joints as written close. A loop that would pass many joints is closed
-where it is shortest.
+where it is shortest, and so are the loops of large groups (short_loops.py).
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from math import comb, prod
 
 from mechkin_cli.mechanism import GROUND_NAME
 from mechkin_cli.structure.network import Connection, Reduction, Subgraph, depths, outward
-from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS, MOST_LOOP_JOINTS
+from mechkin_cli.structure.short_loops import short_cuts
+from mechkin_cli.tolerances import FULL_EQUATIONS, MOST_COMPARED_TREES, MOST_LOOP_JOINTS
 
 
 def closing_names(whole: Reduction, groups: Sequence[Subgraph]) -> list[str]:
@@ -112,8 +113,8 @@ def closings_of(group: Subgraph, depth: Mapping[str, int]) -> list[Connection]:
     sets = _joined(group, [c for c in joints if c.stays])
     # the first in the order of `able` that leave a tree
     chosen = [c for c in reversed(able) if not sets.join(c)][::-1]
-    if sum(c.equations for c in chosen) > MOST_EQUATIONS:
-        return chosen  # too large a block to be solved, however its loops are split
+    if sum(c.equations for c in chosen) > FULL_EQUATIONS:
+        return short_cuts(group.links, joints, chosen)
     return _most_even(group, joints, able, chosen, depth)
 
 

@@ -18,8 +18,9 @@ from mechkin_cli.diagnostics import Diagnostic, MechkinError
 from mechkin_cli.mechanism import Constraint, Joint, Mechanism, PairConstraint
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.assur import Undriven
-from mechkin_cli.structure.loop_order import in_order
+from mechkin_cli.structure.loop_order import entries_of, in_order
 from mechkin_cli.structure.network import Connection, reduce
+from mechkin_cli.tolerances import MOST_BAND_EQUATIONS, MOST_EQUATIONS
 
 
 class UnsolvableGraph(MechkinError):
@@ -196,6 +197,39 @@ SMALL_BLOCK = 12
 (kernel/core/plan/plan_blocks.cpp)."""
 
 
+def neighbours_together(
+    loops: Sequence[Loop], unknowns: Sequence[tuple[int, int]]
+) -> tuple[list[int], tuple[tuple[int, int], ...]]:
+    """Loops and unknowns (edge, freedom) in the order of their neighbourhood (`in_order`)."""
+    order, columns = in_order(_unknowns_passed(loops, unknowns), len(unknowns))
+    return order, tuple(unknowns[k] for k in columns)
+
+
+def _unknowns_passed(loops: Sequence[Loop], unknowns: Sequence[tuple[int, int]]) -> list[list[int]]:
+    """The numbers of the unknowns of each loop's joints."""
+    of_edge: dict[int, list[int]] = {}
+    for number, (edge, _) in enumerate(unknowns):
+        of_edge.setdefault(edge, []).append(number)
+    return [sorted({k for edge, _ in loop for k in of_edge.get(edge, ())}) for loop in loops]
+
+
+def most_equations(graph: SolverGraph, block: Block) -> int:
+    """How many closing equations a block may have: more where most of its matrix is zeros in the
+    order of its loops and unknowns, so that the kernel keeps a band of it
+    (kernel/core/plan/plan_blocks.cpp)."""
+    if block.equations <= MOST_EQUATIONS or block.equations != len(block.unknowns):
+        return MOST_EQUATIONS
+    passed = _unknowns_passed([graph.loops[c] for c in block.closings], block.unknowns)
+    counts = [graph.closings[c].equations for c in block.closings]
+    has_band = 2 * entries_of(passed, counts, len(block.unknowns)) <= block.equations**2
+    return MOST_BAND_EQUATIONS if has_band else MOST_EQUATIONS
+
+
+def is_too_large(graph: SolverGraph) -> bool:
+    """Whether some block has more equations than it may have."""
+    return any(block.equations > most_equations(graph, block) for block in graph.blocks)
+
+
 def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph:
     """The same tree and cut joints with the inputs `free` (joint, coordinate) undriven; the cut
     joints of many loops in the order of their neighbourhood (`in_order`)."""
@@ -208,16 +242,7 @@ def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph
     inputs, names = tuple(at for at, _ in driven), tuple(name for _, name in driven)
     free_graph = graph._replace(inputs=inputs, driven=names)
     if len(unknowns) > SMALL_BLOCK:
-        number = {at: k for k, at in enumerate(unknowns)}
-        of_edge: dict[int, list[int]] = {}
-        for at, k in number.items():
-            of_edge.setdefault(at[0], []).append(k)
-        passed = [
-            sorted({k for edge, _ in graph.loops[c] for k in of_edge.get(edge, ())})
-            for c in closings
-        ]
-        order, columns = in_order(passed, len(unknowns))
-        unknowns = tuple(unknowns[k] for k in columns)
+        order, unknowns = neighbours_together([graph.loops[c] for c in closings], unknowns)
         free_graph = free_graph._replace(
             closings=tuple(graph.closings[closings[k]] for k in order),
             loops=tuple(graph.loops[closings[k]] for k in order),

@@ -24,6 +24,36 @@ def in_order(passed: Passed, unknowns: int) -> tuple[list[int], list[int]]:
     return min(choices, key=lambda choice: _work(choice[0], choice[1], passed))
 
 
+def entries_of(passed: Passed, equations: Sequence[int], unknowns: int) -> int:
+    """Entries of the band of loops and unknowns as they stand, with those that rows exchanged in it
+    may fill; `equations` of each loop."""
+    begins, row = [0], 0
+    for count in equations:
+        begins.append(begins[-1] + count)
+    first, end = [begins[-1]] * unknowns, [0] * unknowns
+    for loop, own in enumerate(passed):
+        for unknown in own:
+            first[unknown] = min(first[unknown], begins[loop])
+            end[unknown] = begins[loop + 1]
+    # the rows of unknowns from `row` on end where those do that an equation may exchange with them
+    entries = last = 0
+    by_first = sorted(range(unknowns), key=first.__getitem__)
+    reach = taken = 0
+    begin = [begins[-1]] * unknowns
+    for row in range(unknowns):
+        before = reach
+        while taken < unknowns and first[by_first[taken]] <= row:
+            reach = max(reach, by_first[taken] + 1)
+            taken += 1
+        reach = max(reach, row + 1)
+        for unknown in range(before, reach):
+            last = max(last, end[unknown])
+            begin[unknown] = row
+        last = max(last, row + 1)
+        entries += last - begin[row]
+    return entries
+
+
 def _loops_of(passed: Passed, unknowns: int) -> list[list[int]]:
     """The loops that pass each unknown."""
     loops: list[list[int]] = [[] for _ in range(unknowns)]

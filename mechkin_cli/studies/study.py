@@ -112,10 +112,12 @@ PIECE_NUMBERS = 2_000_000
 
 MOST_IN_PIECE = 4096
 RESPONSES_IN_PIECE = 512
-LEAST_IN_PIECE = 64
+LEAST_IN_PIECE = 256
+LEAST_RESPONSES_IN_PIECE = 64
 PIECES = 20
 """Variants of a piece: enough to fill the kernel's packs and threads, few enough to lose little;
-and of a small study so few that its progress is seen in so many steps."""
+and of a small study so few that its progress is seen in so many steps, but not so few that writing
+a piece, which goes on in one thread, takes a tenth of what computing it takes in two."""
 
 TRIAL = 16
 TRIAL_SECONDS = 0.25
@@ -176,12 +178,12 @@ class Study:
     def piece(self) -> int:
         """Variants of a piece."""
         question = self.question
-        wished = max(LEAST_IN_PIECE, len(self.numbers) // PIECES)
+        wished = len(self.numbers) // PIECES
         if question.run != SWEEP:
-            return min(RESPONSES_IN_PIECE, wished)
+            return min(RESPONSES_IN_PIECE, max(LEAST_RESPONSES_IN_PIECE, wished))
         wide = 2 + len({column.text for column in question.columns}) + len(question.rows)
         most = PIECE_NUMBERS // (self.model.problem.motion.rows * wide)
-        return max(1, min(MOST_IN_PIECE, wished, most))
+        return max(1, min(MOST_IN_PIECE, max(LEAST_IN_PIECE, wished), most))
 
     @cached_property
     def _sources(self) -> dict[str, str]:
@@ -419,15 +421,23 @@ def _executors(workers: Workers, stack: ExitStack) -> tuple[Executors, int, int]
     if workers.processes:
         make = partial(processes, workers.processes)
         executors = Executors(make(), make)
-        stack.callback(lambda: executors.current.shutdown(wait=False, cancel_futures=True))
+        stack.push(partial(_shut_down, executors))
         return executors, workers.processes, workers.threads or 1
     threads = workers.threads or os.cpu_count() or 1
     if threads == 1:
         return None
     # a piece to a thread: what is done beside the kernel goes on in several, too
     pool = ThreadPoolExecutor(threads)
-    stack.callback(pool.shutdown, wait=False, cancel_futures=True)
-    return Executors(pool), threads, 1
+    executors = Executors(pool)
+    stack.push(partial(_shut_down, executors))
+    return executors, threads, 1
+
+
+def _shut_down(executors: Executors, kind: object, *_: object) -> None:
+    """Ends the executor of a study. Where all is computed its threads and processes have ended when
+    this returns, so that nothing is left to end with the program; an error is not kept waiting by
+    what they still do."""
+    executors.current.shutdown(wait=kind is None, cancel_futures=True)
 
 
 def _digest(content: bytes) -> str:

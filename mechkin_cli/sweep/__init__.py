@@ -31,7 +31,7 @@ __getattr__, __dir__ = lazy_names(
         "friction": "is_slack slack_quantities unfounded_in_motion",
         "limits": "beyond judge_limits limited",
         "messages": "refuse_loaded_spin stands_elsewhere",
-        "parts": "RunVerdicts has_parts",
+        "parts": "Part RunVerdicts has_parts",
         "result": "Readable Result",
         "rows": "SHIFTS SweepRows has_turns",
         "slopes": "ROUNDED bends jumps_between place_text size_text value_at",

@@ -274,11 +274,15 @@ class RunVerdicts:
             self.counts[code] = self.counts.get(code, 0) + int(counts[k])
         self.complete &= result.complete
         self.sound &= result.sound
-        measures = (result.residual, result.power_error, result.condition)
-        for name, values in zip(("residual", "power error", "condition"), measures, strict=True):
-            finite = values[own][np.isfinite(values[own])]
-            if finite.size:
-                self.worst[name] = max(self.worst.get(name, 0.0), float(finite.max()))
+        self.measure("residual", result.residual[own])
+        self.measure("power error", result.power_error[own])
+        self.measure("condition", result.condition[own])
+
+    def measure(self, name: str, values: Floats) -> None:
+        """Adds a measure of some rows (rows,)."""
+        finite = values[np.isfinite(values)]
+        if finite.size:
+            self.worst[name] = max(self.worst.get(name, 0.0), float(finite.max()))
 
 
 def joined_rows(parts: Sequence[Part], session: Session) -> SweepRows:

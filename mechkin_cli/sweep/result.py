@@ -108,6 +108,7 @@ class Result:
         self.row_states = rows
         self.run_start = session, start
         self.events: tuple[str, ...] = ()
+        self.run_events: tuple[str, ...] = ()
         self.measure = ""
         self.demand = Demand.POSITION
         self.residual = np.full(rows.reached.size, np.nan)

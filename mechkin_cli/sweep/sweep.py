@@ -176,6 +176,11 @@ class Sweep:
         self.session, self.start = session, start
         self.question = question(session, tuple(self.asked), verdicts=verdicts)
 
+    @property
+    def run_rows(self) -> int:
+        """Number of rows."""
+        return self.session.problem.motion.rows
+
     def run(self) -> Result:
         """All rows at once.
 

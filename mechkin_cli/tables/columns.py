@@ -128,6 +128,10 @@ class TableSource(Protocol):
         """The same by its letter, which may have to be searched for."""
 
     @property
+    def run_events(self) -> Sequence[str]:
+        """The texts among the events of the whole run, where these are some of its rows."""
+
+    @property
     def events(self) -> Sequence[str]:
         """What happened at each row of a response, "" where nothing did; whether each equilibrium
         is stable; () of a sweep."""
@@ -247,9 +251,9 @@ class Words:
         return np.array(self.words)[self.codes]
 
 
-def words_of(texts: Sequence[str]) -> Words:
-    """Texts row by row."""
-    places = {text: place for place, text in enumerate(dict.fromkeys(texts))}
+def words_of(texts: Sequence[str], known: Sequence[str] = ()) -> Words:
+    """Texts row by row; of rows whose run has others, too, these are the first ones `known`."""
+    places = {text: place for place, text in enumerate(dict.fromkeys((*known, *texts)))}
     return Words(np.array([places[text] for text in texts], np.int32), tuple(places))
 
 
@@ -347,7 +351,7 @@ _ROW_WORDS: Mapping[str, Callable[[TableSource], Words]] = {
     ROW_PROOF: lambda source: Words(
         source.proof.astype(np.int32), tuple(proof.label for proof in Proof)
     ),
-    ROW_EVENT: lambda source: words_of(source.events),
+    ROW_EVENT: lambda source: words_of(source.events, source.run_events),
 }
 
 

@@ -52,6 +52,7 @@ def replace_files(
     removed: Sequence[str] = (),
     attempt: Path | None = None,
     streamed: Sequence[str] = (),
+    rows: Mapping[str, int] | None = None,
 ) -> None:
     """Put files (name -> content) into the folder, replacing those of the same names; those of the
     names `removed` go at the same moment.
@@ -62,6 +63,7 @@ def replace_files(
         attempt: one that was begun, in which the files of the names `streamed` are new already;
             None: there is none. What stands in their places is not compared with them: reading it
             takes as long as writing them did.
+        rows: of the files that hold rows: how many are done.
 
     Raises:
         UsageError: a file cannot be written.
@@ -78,7 +80,7 @@ def replace_files(
         with refusal(folder / names[0]):
             if not is_begun:
                 begin_attempt(attempt)
-        _prepare(attempt, folder, files, names)
+        _prepare(attempt, folder, files, names, rows or {})
         if len(names) == len(new) == 1:
             (name,) = new
             with refusal(folder / name):
@@ -123,20 +125,32 @@ def settle_all(folder: Path) -> None:
                     path.unlink()
 
 
-def each(folder: Path, names: Iterable[str], work: Callable[[str], object]) -> None:
-    """Does the work for each name; an error is told of the file of that name in the folder."""
+def each(
+    folder: Path,
+    names: Iterable[str],
+    work: Callable[[str], object],
+    rows: Mapping[str, int] | None = None,
+) -> None:
+    """Does the work for each name; an error is told of the file of that name in the folder, of
+    which so many `rows` are done."""
     name = ""
     try:
         for name in names:
             work(name)
     except OSError as error:
-        raise refused(folder / name, error) from error
+        raise refused(folder / name, error, (rows or {}).get(name, 0)) from error
 
 
-def _prepare(attempt: Path, folder: Path, files: Mapping[str, bytes], names: Sequence[str]) -> None:
+def _prepare(
+    attempt: Path,
+    folder: Path,
+    files: Mapping[str, bytes],
+    names: Sequence[str],
+    rows: Mapping[str, int],
+) -> None:
     """What is new, beside what was streamed, and second names of what is old."""
     new, old = (f"{attempt}{os.sep}{side}{os.sep}" for side in ("new", "old"))
-    each(folder, files, lambda name: _write(new + name, files[name]))
+    each(folder, files, lambda name: _write(new + name, files[name]), rows)
     each(folder, names, lambda name: _keep(f"{folder}{os.sep}{name}", old + name))
 
 

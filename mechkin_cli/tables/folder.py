@@ -208,11 +208,14 @@ class OutputFile(io.RawIOBase):
         Args:
             target: where it is to stand.
             begin: makes the attempt's folder, and says where there the file of a name is.
+
+        `rows` are those of a table that have been given to it.
         """
         self.target = target
         self.held: bytearray | None = bytearray()
         self._begin = begin
         self._stream: io.FileIO | None = None
+        self.rows = 0
         self._checksum = self._size = 0
         self._has_failed = False
 
@@ -362,11 +365,16 @@ class OutputFolder:
             removed, changed = _left_by_earlier(self.folder, files)
         held = {name: bytes(file.held) for name, file in files.items() if file.held is not None}
         held[LISTING] = _listing({name: file.digest for name, file in files.items()})
-        self._place(held, removed, [name for name in files if name not in held])
+        rows = {name: file.rows for name, file in files.items()}
+        self._place(held, removed, [name for name in files if name not in held], rows)
         return [self.folder / name for name in files], removed, changed
 
     def _place(
-        self, files: Mapping[str, bytes], removed: Sequence[str] = (), streamed: Sequence[str] = ()
+        self,
+        files: Mapping[str, bytes],
+        removed: Sequence[str] = (),
+        streamed: Sequence[str] = (),
+        rows: Mapping[str, int] | None = None,
     ) -> list[Path]:
         targets = [self.folder / name for name in files]
         if targets:
@@ -375,7 +383,7 @@ class OutputFolder:
         each(self.folder, [*files, *streamed], lambda name: refuse_special(self.folder / name))
         claim = self._claim
         attempt = claim.attempt if claim is not None else None
-        replace_files(self.folder, files, removed, attempt, streamed)
+        replace_files(self.folder, files, removed, attempt, streamed, rows)
         if claim is not None:
             claim.attempt = None
         return targets

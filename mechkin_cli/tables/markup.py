@@ -192,8 +192,9 @@ def rows_table(source: TableSource, run: str = SWEEP) -> Columns:
             columns.insert(-3, TableColumn("proof", "", row_words(ROW_PROOF, source)))
         return Columns("rows", "Rows and their verdicts", tuple(columns))
     columns.insert(-3, TableColumn("event", "", row_words(ROW_EVENT, source)))
-    error = np.asarray(source.quantity(f"row.{source.measure}").value, dtype=np.float64)
-    columns.append(TableColumn(source.measure, "", error))
+    if source.measure:
+        error = np.asarray(source.quantity(f"row.{source.measure}").value, dtype=np.float64)
+        columns.append(TableColumn(source.measure, "", error))
     return Columns(f"{run}.rows", f"Rows of {run} and their verdicts", tuple(columns))
 
 

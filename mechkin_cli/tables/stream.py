@@ -235,6 +235,8 @@ class TableWriter:
             with refusal_of(self._file, lambda: self.rows):
                 self._table.write(columns)
             self.rows += columns[0].rows
+            if isinstance(self._file, OutputFile):
+                self._file.rows = self.rows
 
     def end(self) -> None:
         """Writes what stands at the end.

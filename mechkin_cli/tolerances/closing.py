@@ -53,9 +53,24 @@ PRECISE_RESIDUAL_ACCEPT: Final = 1e-30
 # --- blocks --------------------------------------------------------------------------------------
 
 MOST_EQUATIONS: Final = 120
-"""Closing equations of one block. A Stewart platform has 6, with universal joints 15. The work of a
-row grows with their cube (a ladder of four-bars driven at its far end, with a search of its
-assemblies: 50 equations 9 s, 120 equations 28 s); blocks and loops may be any number."""
+"""Closing equations of one block whose matrix is full. A Stewart platform has 6, with universal
+joints 15. The work of a row grows with their cube; blocks and loops may be any number."""
+
+MOST_BAND_EQUATIONS: Final = 2000
+"""Closing equations of one block whose matrix is a band (loop_order.py), where the work of a row
+grows with their number. What asks for singular vectors of the whole matrix, next to branch points
+and for mobility, still grows with the cube: that would be half an hour of more."""
+
+FULL_EQUATIONS: Final = 24
+"""Closing equations up to which full matrices are as fast as bands, so that loops are split evenly
+instead of short (kernel/core/plan/plan_blocks.cpp)."""
+
+MOST_EXCHANGED_LOOPS: Final = 200
+"""Loops of one block whose cut joints are exchanged to make them shorter: each round of exchanges
+grows with their cube, and takes a second of so many."""
+
+EXCHANGE_ROUNDS: Final = 8
+"""Rounds of such exchanges: each may halve the loops."""
 
 LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written

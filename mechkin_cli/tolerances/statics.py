@@ -106,8 +106,14 @@ at a dead centre, and there is no stiffness by it."""
 MOST_REST_ROWS: Final = 256
 """Rows of a sweep at rest that are corrected at once."""
 
+REST_POINTS: Final = 3
+"""Known rows through which the next ones are extrapolated: with more, long stretches swing."""
+
 MOST_CHORDS: Final = 12
 """Corrections of predicted equilibria with one stiffness: three or four are enough."""
+
+TELLING_STEP: Final = 1e-7
+"""Corrections beyond this, rad or length units, tell the slope of the forces to nine digits."""
 
 FEW_CHORDS: Final = 4
 """So few corrections tell that the next stretch may be longer."""

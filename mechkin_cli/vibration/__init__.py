@@ -11,6 +11,7 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.vibration.place import *
+    from mechkin_cli.vibration.playing import *
     from mechkin_cli.vibration.tables import *
     from mechkin_cli.vibration.vibration import *
 
@@ -18,6 +19,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "place": "freed",
+        "playing": "PlayedMode played",
         "tables": "vibration_tables",
         "vibration": "FrequencyResponse StateSpace Vibration",
     },

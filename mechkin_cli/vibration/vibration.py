@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +28,8 @@ from mechkin_cli.vibration.modes import NaturalMotions, natural_motions
 from mechkin_cli.vibration.place import Freed
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     from numpy.typing import NDArray
 
     from mechkin_cli.expressions import Expression
@@ -104,9 +106,12 @@ class Vibration(Listed):
     """
 
     def __init__(
-        self, freed: Freed, again: Callable[[str, float], Vibration] | None = None
+        self,
+        freed: Freed,
+        again: Callable[[str, float], Vibration] | None = None,
+        shown: Callable[[Vibration, str | PathLike[str] | None], Any] | None = None,
     ) -> None:
-        self._freed, self._again = freed, again
+        self._freed, self._again, self._shown = freed, again, shown
         self._small = freed.motions
         self.coordinates: tuple[str, ...] = freed.motions.coordinates
         self.driven: tuple[str, ...] = freed.driven
@@ -387,6 +392,17 @@ class Vibration(Listed):
 
     # How it is shown.
 
+    def view(self, path: str | PathLike[str] | None = None) -> Any:
+        """Makes a page in which the modes are played, each as a run of one period, swung as far as
+        is seen well; arguments and answers are those of `Model.view`.
+
+        Raises:
+            UsageError: the page cannot be written there, or the loops do not close beside the
+                place.
+        """
+        assert self._shown is not None
+        return self._shown(self, path)
+
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What was left out, and what is held."""
@@ -420,7 +436,8 @@ class Vibration(Listed):
                 zip(self.frequencies, self.damping_ratios, strict=True)
             )
         )
-        title = f"{len(rows)} modes of {', '.join(self.coordinates)}"
+        count = "1 mode" if len(rows) == 1 else f"{len(rows)} modes"
+        title = f"{count} of {', '.join(self.coordinates)}"
         return Listing(title, ("mode", "frequency", "damping ratio", "moves most"), rows)
 
     def _leading(self, mode: int) -> tuple[str]:

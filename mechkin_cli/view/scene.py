@@ -464,13 +464,29 @@ def _shown(analysis: ShownAnalysis, modes: bool, notes: list[Diagnostic]) -> Sho
     others = list(_other_modes(analysis, own, notes)) if modes and own else []
     branches = {_OWN_NAMES.get(own, f"mode {own}"): analysis}
     branches |= {f"mode {letter}": one for letter, one in others}
-    title = f"sweep of {model.name}" if run == SWEEP else f"response {run}"
-    return ShownRun(run, title, branches, forces, _other_tables(analysis, notes))
+    return ShownRun(
+        run,
+        _title(model.name, model.problem, run),
+        branches,
+        forces,
+        _other_tables(analysis, notes),
+    )
+
+
+def _title(name: str, problem: Problem, run: str) -> str:
+    if run == SWEEP:
+        return f"sweep of {name}"
+    known = problem.responses.get(run)
+    if known is None:  # a mode of vibration
+        return run
+    return f"response {run}" if known.search is None else f"equilibria {run}"
 
 
 def _may_read_forces(analysis: ShownAnalysis, notes: list[Diagnostic]) -> bool:
     """Whether reactions are there to be shown; a note says why not."""
     result = analysis.result
+    if not (analysis.run == SWEEP or analysis.run in analysis.model.problem.responses):
+        return False  # what loads are where a mode of vibration swings shows nothing
     if not has_forces(result.problem.mechanism) or not result.solved.any():
         return False
     try:

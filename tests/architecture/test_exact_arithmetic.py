@@ -86,7 +86,7 @@ ACCEPTED = {
     ("tape/identities.py", "pow(rest, -1, whole)"): "whole numbers",
     ("tape/identities.py", "prime ** (count // 2)"): "whole numbers",
     ("response/result.py", "TIME ** order"): FRACTIONS,
-    ("response/runs.py", "TIME ** order"): FRACTIONS,
+    ("response/rows.py", "TIME ** order"): FRACTIONS,
     ("building/fields.py", "TIME ** order"): FRACTIONS,
     ("session/double_double.py", "TIME ** order"): FRACTIONS,
     ("building/law_reading.py", "self.over.dimension ** order"): FRACTIONS,

@@ -40,8 +40,10 @@ import mechkin_cli as mk
 from benchmarks import sevenr
 from mechkin_cli.bench.measurement import in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
-from mechkin_cli.response.integration import MotionRows, integrate
-from mechkin_cli.response.runs import Prepared, prepare, read, rows_of
+from mechkin_cli.response.integration import integrate
+from mechkin_cli.response.report import MotionRows
+from mechkin_cli.response.rows import Prepared, rows_of
+from mechkin_cli.response.runs import prepare, read
 from mechkin_cli.session.kernel_run import Ask, RowInputs
 from mechkin_cli.session.session import Packing, Session
 from mechkin_cli.show import Floats

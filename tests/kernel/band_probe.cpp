@@ -1,5 +1,5 @@
 // Bands of many loops for one pack, behind plain C functions for the tests.
-#include "response/regular_band.hpp"
+#include "rows/regular_band.hpp"
 #include "rows/position.hpp"
 #include "rows/inverse_norm.hpp"
 

@@ -52,7 +52,7 @@ class Free:
     """A motion that runs: its session's plan, how it begins, its drives and its stops."""
 
     def __init__(self, name: str) -> None:
-        from mechkin_cli.response.runs import watched_stop
+        from mechkin_cli.response.integration import watched_stop
 
         problem = mk.loads(PENDULUM).problem
         response = problem.responses[name]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+import re
 from math import acos, cos, degrees, hypot, pi, radians, sin, sqrt, tan
 from pathlib import Path
 from typing import Any
@@ -266,6 +268,50 @@ def test_other_free_coordinates_find_the_same(coordinate: str) -> None:
     assert other["row.frequency"][order] == pytest.approx(frequencies, rel=1e-8, nan_ok=True)
 
 
+def _scaled(text: str) -> str:
+    """Ten times as large, with springs a tenth as stiff: weights and springs grow alike."""
+
+    def larger(found: re.Match[str]) -> str:
+        return ", ".join(str(10 * float(x)) for x in found.group(0).split(","))
+
+    head, tail = text.split("links:", 1)
+    tail = re.sub(r"(?<=: \[)-?[\d.]+, -?[\d.]+", larger, tail)
+    return f"{head}links:{tail}".replace("1 N/mm, free: 60", "0.1 N/mm, free: 600").replace(
+        "g: [0.0, -98100.0]", "g: [0, -9810]"
+    )
+
+
+def _mirrored(text: str) -> str:
+    return re.sub(
+        r"(?<=: \[)(-?[\d.]+)(?=, -?[\d.]+\])", lambda found: str(-float(found.group(0))), text
+    )
+
+
+def _reordered(text: str) -> str:
+    """Joints and links in the opposite order: another tree, other cut joints."""
+    lines = text.splitlines()
+    for key in ("links:", "joints:"):
+        first = lines.index(key) + 1
+        last = next(k for k in range(first, len(lines)) if not lines[k].startswith("  "))
+        lines[first:last] = lines[first:last][::-1]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize(("change", "sign"), [(_scaled, 1.0), (_mirrored, -1.0), (_reordered, 1.0)])
+def test_the_same_mechanism_written_otherwise(change: Any, sign: float) -> None:
+    window = {"A.theta": (-180, 180)}
+    own = mk.loads(FOUR_BAR).equilibrium(window=window)
+    other = mk.loads(change(FOUR_BAR)).equilibrium(window=window)
+    order = np.argsort(sign * other["A.theta"])
+    assert sign * other["A.theta"][order] == pytest.approx(own["A.theta"], abs=1e-8)
+    assert other["row.event"][order].tolist() == own["row.event"].tolist()
+    if change is not _scaled:
+        stiffness = own["row.least_stiffness"]
+        assert other["row.least_stiffness"][order] == pytest.approx(stiffness, rel=1e-8)
+        frequency = own["row.frequency"]
+        assert other["row.frequency"][order] == pytest.approx(frequency, rel=1e-8, nan_ok=True)
+
+
 def test_lanes_and_threads_do_not_matter() -> None:
     m = mk.loads(FOUR_BAR + "equilibria: {all: {window: {A.theta: {from: -180, to: 180}}}}\n")
     one = m.equilibrium("all", lanes=2, threads=1)
@@ -332,3 +378,76 @@ def test_variants_of_an_equilibrium() -> None:
     r = m.vary({"torque": [1, 2, 3]}, ["A.theta"], run="pushed")
     wanted = np.degrees(np.arcsin(np.array([1, 2, 3]) / (2 * G * 0.25)))
     assert r["A.theta"][:, 0] == pytest.approx(wanted, rel=1e-10)
+
+
+def test_an_answer_is_pickled_and_asked_again() -> None:
+    m = mk.load("mechanisms/statics/toggle.yaml")
+    for r in (m.equilibrium("pushed"), m.equilibrium(near={"A.theta": -5})):
+        again = pickle.loads(pickle.dumps(r))
+        assert again["A.theta"].tobytes() == r["A.theta"].tobytes()
+
+
+def test_sensitivities_of_places_that_balance_are_refused() -> None:
+    m = mk.load("mechanisms/statics/toggle.yaml")
+    for run in ("sweep", "pushed"):
+        with pytest.raises(mk.UsageError, match="loads balance"):
+            m.sensitivities(["A.theta"], run=run)
+
+
+def test_loads_of_time_are_taken_at_the_moment_that_is_given() -> None:
+    loads = [*PENDULUM["loads"], {"type": "force", "joint": "A", "value": "1 N*m/s*time"}]
+    loads[1] = {"type": "torque", "link": "bob", "torque": [0, 0, "1 N*m/s*time"]}
+    own = {"late": {"near": {"A.theta": 0}, "time": 2}, "first": {"near": {"A.theta": 1}}}
+    m = mk.load(PENDULUM | {"loads": loads, "equilibria": own})
+    late = m.equilibrium("late")
+    assert late["A.theta"][0] == pytest.approx(degrees(np.arcsin(2 / (2 * G * 0.25))), rel=1e-12)
+    assert late["time"].tolist() == [2.0]
+    assert m.equilibrium("first")["A.theta"][0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_held_coordinate_has_its_effort() -> None:
+    own = {"held": {"near": {"B.theta": 10}, "driven": {"A.theta": {"at": 30}}}}
+    r = mk.load(TWO | {"equilibria": own}).equilibrium("held")
+    # the lower link hangs down
+    assert r["A.theta"][0] + r["B.theta"][0] == pytest.approx(0.0, abs=1e-9)
+    moment = G * sin(radians(30)) * (2 * 0.25 + 1 * 0.5)
+    assert r["A.effort"][0] == pytest.approx(moment, rel=1e-10)
+
+
+def test_friction_is_left_out_and_told() -> None:
+    rubs = {
+        "type": "friction",
+        "joint": "A",
+        "coefficient": 0.1,
+        "radius": 0.02,
+    }
+    m = mk.load(PENDULUM | {"loads": [*PENDULUM["loads"], rubs]})
+    r = m.equilibrium(near={"A.theta": 20})
+    assert r["A.theta"][0] == pytest.approx(0.0, abs=1e-9)
+    assert "friction-left-out" in [note.code for note in r.diagnostics]
+
+
+def test_a_force_that_follows_its_link_leaves_the_stiffness_unsymmetric() -> None:
+    """Beck's column of two links: its least stiffness creeps nowhere below the flutter load."""
+    beck = {
+        "format": 1,
+        "plane": "xy",
+        "links": {
+            "a": {"mass": 1, "center_of_mass": [0, 0.5]},
+            "b": {"mass": 1, "center_of_mass": [0, 1.5]},
+        },
+        "joints": {
+            "A": {"type": "R", "links": ["ground", "a"], "point": [0, 0]},
+            "B": {"type": "R", "links": ["a", "b"], "point": [0, 1]},
+        },
+        "points": {"tip": {"link": "b", "at": [0, 2]}},
+        "loads": [
+            {"type": "spring", "joint": "A", "coordinate": "theta", "stiffness": 1},
+            {"type": "spring", "joint": "B", "coordinate": "theta", "stiffness": 1},
+            {"type": "force", "link": "b", "point": "tip", "force": [0, -0.5], "axes": "link"},
+        ],
+    }
+    r = mk.load(beck).equilibrium(near={"A.theta": 3, "B.theta": 2})
+    assert [r["A.theta"][0], r["B.theta"][0]] == pytest.approx([0, 0], abs=1e-9)
+    assert r["row.event"].tolist() == ["stable"]
+    assert np.isnan(r["row.frequency"]).all()

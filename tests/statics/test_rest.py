@@ -62,7 +62,8 @@ def test_the_driven_sweep_of_the_same_places_needs_no_effort() -> None:
     m = mk.loads(LEVER + MOTION)
     r = m.analyze()
     values = [float(value) for value in r["E.theta"]]
-    motion = f"motion: {{inputs: {{A.theta: {{from: 0, to: 360, step: 5}}, E.theta: {{values: {values}}}}}}}\n"
+    inputs = f"{{A.theta: {{from: 0, to: 360, step: 5}}, E.theta: {{values: {values}}}}}"
+    motion = f"motion: {{inputs: {inputs}}}\n"
     driven = mk.loads(LEVER + motion).analyze(["E.effort", "A.effort", "D.force"])
     assert np.abs(driven["E.effort"]).max() < 1e-9 * np.abs(driven["A.effort"]).max()
     assert driven["D.force"] == pytest.approx(r["D.force"], rel=1e-9, abs=1e-9)

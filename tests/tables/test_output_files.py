@@ -12,7 +12,15 @@ from tables.streamed import cut, random_table
 from tables.test_file_set import DONE, KILLED, REFUSED, child, debris, die, fail, files, interrupt
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables import OutputFolder, TableStream, folder as room, heading_of, write_table
+from mechkin_cli.tables import (
+    OutputFolder,
+    TableStream,
+    file_set,
+    folder as room,
+    heading_of,
+    stream_of,
+    write_table,
+)
 from mechkin_cli.tables.writers import STREAM_FORMATS
 from mechkin_cli.tolerances import HELD_BYTES, TEXT_ROOM
 
@@ -144,6 +152,22 @@ def test_a_full_disk_is_told_with_the_rows_that_were_written(
     assert int(rows) % 1000 == 0
     assert 0 < int(rows) < 200_000
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_told_of_a_small_file_with_its_rows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A small file is held, and written when all of them take their places."""
+
+    def write(path: str, content: bytes) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(file_set, "_write", write)
+    with OutputFolder(tmp_path / "out") as output:
+        with output.begin("t.csv") as file:
+            write_table(stream_of(random_table(37)), "csv", file)
+        with pytest.raises(UsageError, match=r"out/t\.csv after 37 rows: the disk is full"):
+            output.write_run()
 
 
 @pytest.mark.parametrize("format", STREAM_FORMATS)

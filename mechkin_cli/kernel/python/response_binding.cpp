@@ -4,7 +4,9 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <tuple>
 
 #include "arrays.hpp"
@@ -32,6 +34,7 @@ const double* checked(const Rows& a, std::size_t variants, long width, const cha
 nb::dict report_of(const ResponseReport& report) {
   const LaneReport& r = report.lane;
   nb::dict d;
+  d["first"] = report.first;
   d["stop"] = report.stop, d["joints"] = report.joints;
   nb::list crossings;
   for (const PassedBranchPoint& p : report.crossings) crossings.append(nb::make_tuple(p.time, p.state));
@@ -87,17 +90,50 @@ std::vector<MotionStop> stops_of(const Stops& stops) {
   return made;
 }
 
+// The arrays of a block of rows, which Python takes as often as it is full.
+class TakenByPython : public RowTaker {
+ public:
+  TakenByPython(nb::object taker, nb::list arrays) : taker_(std::move(taker)), arrays_(std::move(arrays)) {}
+
+  // An exception ends the motion, and is raised behind it.
+  bool take(long first, long rows) override {
+    nb::gil_scoped_acquire acquired;
+    try {
+      return nb::cast<bool>(taker_(first, rows, arrays_));
+    } catch (nb::python_error& error) {
+      raised_.emplace(std::move(error));
+      return false;
+    }
+  }
+
+  void raise() {
+    if (raised_) {
+      nb::python_error error = std::move(*raised_);
+      raised_.reset();
+      throw error;
+    }
+  }
+
+ private:
+  nb::object taker_;
+  nb::list arrays_;
+  std::optional<nb::python_error> raised_;
+};
+
 // `held` are plans; references, for another thread may change the list meanwhile.
 nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, const Rows& first, const Rows& tangent,
               double begin, const Row& times, const Stops& stops, const DrivenLaws* driven, double tolerance,
               double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests,
-              int iterations, double jump, double radius, bool straight, int lanes, int threads) {
+              int iterations, double jump, double radius, bool straight, int lanes, int threads, long block,
+              const nb::object& taker) {
   const std::vector<const FrozenPlan*> plans = plans_of(held);
   if (!motion_unit(lanes)) throw nb::value_error("lanes: this width is not available on this machine");
   if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
   need(method >= 0 && method <= (int)MethodChoice::IMPLICIT, "method: unknown");
   const Plan& p = plans[0]->view();
-  const std::size_t count = plans.size(), rows = times.shape(0);
+  need(taker.is_none() || (plans.size() == 1 && block > 0), "taker: of one motion, in blocks of rows");
+  const std::size_t count = plans.size(), every = times.shape(0);
+  const std::size_t rows = taker.is_none() ? every : std::min(every, (std::size_t)block);
   int slots = 0;
   for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2))) slots += t.width;
   const std::size_t wide = (std::size_t)p.charts * p.columns;
@@ -106,9 +142,11 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
   ResponseTask task;
   if (p.law.outputs - p.load_values != (int)stops.size()) throw nb::value_error("stops: one for each watched value");
   if ((driven ? driven->inputs() : 0) != p.inputs) throw nb::value_error("driven: one law for each input");
-  // a copy: another thread may change the array
-  const std::vector<double> moments(times.data(), times.data() + rows);
-  task.times = moments.data(), task.driven = driven, task.stops = stops_of(stops);
+  // a copy: another thread may change the array; who takes blocks keeps it as it is, as there may be many moments
+  std::vector<double> moments;
+  if (taker.is_none()) moments.assign(times.data(), times.data() + every);
+  task.moments = (long)every;
+  task.times = taker.is_none() ? moments.data() : times.data(), task.driven = driven, task.stops = stops_of(stops);
   task.limits = limits_of(tests, iterations, jump, radius, straight);
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
   task.settings.dense_rows = dense_rows, task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
@@ -131,11 +169,17 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
                          all.turn + v * slots * (rows + 1),
                          all.friction_told + v * numbers * (rows + 1), all.work + v * 2 * (rows + 1), all.flags + v * (rows + 1)});
   }
+  nb::list arrays;
+  for (const auto& a : {states, directions, rates, seconds, turns, frictions, work}) arrays.append(a);
+  arrays.append(flags);
+  TakenByPython taken(taker, arrays);
+  if (!taker.is_none()) task.rows[0].taker = &taken;
   const std::vector<ResponseReport> reports = value_of([&] {
     nb::gil_scoped_release released;
     FloatingPointState floating;
     return respond(task, lanes, threads);
   }());
+  taken.raise();
   nb::list told;
   for (const ResponseReport& r : reports) told.append(report_of(r));
   return nb::make_tuple(told, states, directions, rates, seconds, turns, frictions, work, flags);
@@ -170,5 +214,5 @@ void bind_response(nb::module_& m) {
   // reached hold nan.
   m.def("respond", &run_response, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "stops"_a, "driven"_a.none(),
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a, "straight"_a,
-        "lanes"_a, "threads"_a);
+        "lanes"_a, "threads"_a, "block"_a = 0, "taker"_a.none() = nb::none());
 }

@@ -31,15 +31,21 @@ void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& b
   double* const sum = N ? sized : sums.begin();
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < columns; ++j) sum[j] = 0.0;
-    for (int i = k; i < m; ++i)
+    for (int i = k; i < m; ++i) {
+      if (!N && a[i * n + k] == 0.0) continue;
       for (int j = 0; j < columns; ++j) sum[j] += a[i * n + k] * x[i * columns + j];
+    }
     for (int j = 0; j < columns; ++j) sum[j] *= beta[k];
-    for (int i = k; i < m; ++i)
+    for (int i = k; i < m; ++i) {
+      if (!N && a[i * n + k] == 0.0) continue;
       for (int j = 0; j < columns; ++j) x[i * columns + j] -= sum[j] * a[i * n + k];
+    }
   }
   for (int k = n - 1; k >= 0; --k) {
-    for (int i = k + 1; i < n; ++i)
+    for (int i = k + 1; i < n; ++i) {
+      if (!N && a[k * n + i] == 0.0) continue;
       for (int j = 0; j < columns; ++j) x[k * columns + j] -= a[k * n + i] * x[i * columns + j];
+    }
     for (int j = 0; j < columns; ++j) x[k * columns + j] /= pivot[k];
   }
 }
@@ -93,8 +99,11 @@ void square_into(const double* a, int size, double* out) {
   const int n = N ? N : size;
   for (int e = 0; e < n * n; ++e) out[e] = 0.0;
   for (int i = 0; i < n; ++i)
-    for (int k = 0; k < n; ++k)
-      for (int j = 0; j < n; ++j) out[i * n + j] += a[i * n + k] * a[k * n + j];
+    for (int k = 0; k < n; ++k) {
+      const double factor = a[i * n + k];
+      if (!N && factor == 0.0) continue;  // loops that do not act on each other
+      for (int j = 0; j < n; ++j) out[i * n + j] += factor * a[k * n + j];
+    }
 }
 
 // Calls use(bound) with one bound of the spectral radius after the other until it says that this is enough. `power` holds

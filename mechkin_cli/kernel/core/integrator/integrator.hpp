@@ -96,6 +96,12 @@ class Motion {
     return false;
   }
 
+  // Asked behind rows: whether no more of a lane are wanted, which then is stuck where it is.
+  virtual bool is_left(int lane) const {
+    (void)lane;
+    return false;
+  }
+
   // Rows are reached; `row` (lanes). At the end of a step (`inside` false) that is the chart's origin, after `accept`. Inside
   // a step y is interpolated, in the chart of the step that is not yet accepted; the places of a lane come in time order.
   virtual void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) = 0;

@@ -194,6 +194,7 @@ void March::take(Method& method, Flags mask) {
     c.landed = false;
     c.landing = -1;
     if (c.running && !has_row(c)) finish(i, LaneEnd::DONE);
+    if (c.running && states_.motion.is_left(i)) finish(i, LaneEnd::STUCK);
     if (c.running) rewiden(i);
   }
 }

@@ -108,6 +108,9 @@ struct Block {
   bool placeless;                // as many relations between coordinates as unknowns, which do not go by places
   bool is_explicit;              // one such whose unknown is no function's argument, so that it gives the unknown
   int band_entries;              // of its Jacobian as a band, with a border of charts (arithmetic/band.hpp); 0: a full matrix
+  long jacobian_at, swap_at;     // where its matrix and the exchanges of its rows begin among those of all blocks
+  int equation_at;               // its first equation among those of all blocks
+  long full_at;                  // where its matrix begins if all are full ones, as Request::jacobian has them
 };
 
 template <class Number>

@@ -11,8 +11,9 @@ namespace {
 // Entries of a block's matrices are counted in int; its Jacobian would take 128 MB a lane.
 constexpr int MOST_BLOCK_ROWS = 4096;
 
-// Unknowns up to which full matrices are as fast as bands.
-constexpr int SMALL_BLOCK = 12;
+// Unknowns up to which full matrices are as fast as bands: of blocks with a chart, and of others, whose rows are read more than
+// their branch is judged.
+constexpr int SMALL_BLOCK = 12, SMALL_DRIVEN_BLOCK = 24;
 
 int equations(const ClosingJoint& j) { return kernel_unit()->pair_types[j.type].equations; }
 
@@ -45,7 +46,7 @@ Refusal PlanBuilder::add_block(int closing_joints, const std::vector<int>& joint
   REQUIRE(closing_joints + charts > 0 && closing_joints >= 0 &&
               closing_joints <= (int)closing_.size() - closing_begin, "block of unknown joints");
   REQUIRE(!rest_set_, "blocks come before the rest");
-  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts, false, false, 0};
+  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts, false, false, 0, 0, 0, 0, 0};
   long rows = charts;
   for (int c = b.closing_begin; c < b.closing_end; ++c)
     rows += equations(closing_[c]);
@@ -189,18 +190,21 @@ void PlanBuilder::find_relations() {
   }
 }
 
-// Where the entries of a block with a chart are, which has all loops in it, if most of its matrix is zeros. It is the last.
+// Where the entries of a block are, if most of its matrix is zeros.
 void PlanBuilder::find_band(Block* block) {
   const int n = block->size, inner = block->rows - block->charts;
-  if (!block->charts || block->rows != n || n <= SMALL_BLOCK) return;
+  if (block->rows != n || n <= (block->charts ? SMALL_BLOCK : SMALL_DRIVEN_BLOCK)) return;
   std::vector<int> first(n, inner), end(n, 0);
   for (int c = block->closing_begin; c < block->closing_end; ++c) {
     const ClosingJoint& j = closing_[c];
-    for (int l = j.loop_begin; l < j.loop_end; ++l)
-      for (int u = 0; u < n; ++u) {
-        if (column_joint_[unknown_[block->column_begin + u]] != loop_[l].joint) continue;
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const TreeJoint& t = joints_[loop_[l].joint];
+      for (int f = 0; f < kernel_unit()->tree_types[t.type].freedoms; ++f) {
+        if (column_block_[t.column + f] != (int)(block - block_.data())) continue;
+        const int u = column_place_[t.column + f];
         first[u] = std::min(first[u], j.row), end[u] = std::max(end[u], j.row + equations(j));
       }
+    }
   }
   // unknowns before `reach` may hold an equation, and any of those not yet gone holds what one of them does
   BandRow* const row = &band_[block->column_begin];
@@ -223,6 +227,20 @@ void PlanBuilder::find_band(Block* block) {
   if (2 * entries <= (long)n * n) block->band_entries = (int)entries;
 }
 
+// The bands of all blocks, and where each block's matrices begin.
+void PlanBuilder::find_bands() {
+  band_.assign(unknown_.size(), {});
+  long jacobian = 0, swap = 0, full = 0;
+  int equation = 0;
+  for (Block& b : block_) {
+    find_band(&b);
+    b.jacobian_at = jacobian, b.swap_at = swap, b.equation_at = equation, b.full_at = full;
+    const long n = b.size, entries = b.rows * n;
+    jacobian += b.band_entries ? b.band_entries : entries, full += entries, equation += b.rows;
+    swap += b.band_entries ? band_[b.column_end - 1].swaps : n * (n - 1) / 2;
+  }
+}
+
 Result<FrozenPlan> PlanBuilder::finish() {
   CHECK(open());
   // a tree whose states are given whole: only its poses are asked for
@@ -237,8 +255,7 @@ Result<FrozenPlan> PlanBuilder::finish() {
   sort_drives();
   find_turns();
   find_relations();
-  band_.assign(unknown_.size(), {});
-  if (!block_.empty()) find_band(&block_.back());
+  find_bands();
   REQUIRE(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
   program_.find_turns(arrays());
   FrozenPlan plan(arrays(), constants_, repeated_);

@@ -120,6 +120,7 @@ class PlanBuilder {
   void find_turns();
   void find_relations();
   void find_band(Block* block);
+  void find_bands();
   Plan arrays() const;
 
   Plan plan_{};

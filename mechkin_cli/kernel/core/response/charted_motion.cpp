@@ -55,6 +55,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   crossing_.resize(lanes_), crossings_.resize(lanes_), touches_.resize(lanes_);
   for (Crossing& c : crossing_) c.offset.assign(plan_.charts, 0.0);
   cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
+  first_row_.assign(lanes_, 0), left_.assign(lanes_, false);
   for (auto* a : {&energy_, &lightest_, &lightest_start_, &growth_}) a->assign(lanes_, 0.0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
@@ -373,9 +374,20 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
   }
 }
 
-void ChartedMotion::write_row(int lane, long row, const Stage& at_row, const double* done) {
+// Where a row is in the arrays of its lane, whose block is handed on when it is full.
+long ChartedMotion::place_of(int lane, long row) {
   const MotionRows& out = rows_[lane];
-  if (!out.rows) return;
+  if (!out.taker || row - first_row_[lane] < out.rows) return row - first_row_[lane];
+  left_[lane] = !out.taker->take(first_row_[lane], out.rows);
+  first_row_[lane] += out.rows;
+  return row - first_row_[lane];
+}
+
+void ChartedMotion::write_row(int lane, long number, const Stage& at_row, const double* done) {
+  const MotionRows& out = rows_[lane];
+  if (!out.rows || left_[lane]) return;
+  const long row = place_of(lane, number);
+  if (left_[lane]) return;
   const int n = plan_.charts, columns = plan_.columns;
   const auto put = [&](double* to, long column, double x) { to[column * (out.rows + 1) + row] = x; };
   for (int k = 0; k < plan_.states; ++k) put(out.state, k, at(at_row.state, k, lane));

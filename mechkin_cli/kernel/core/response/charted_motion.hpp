@@ -61,6 +61,14 @@ struct TouchedStop {
   double time;
 };
 
+// Takes the rows of a lane in blocks, as they are reached: the first `rows` of its arrays, of which the first has the number
+// `first`. False: no more are wanted, and the motion may end.
+class RowTaker {
+ public:
+  virtual ~RowTaker() = default;
+  virtual bool take(long first, long rows) = 0;
+};
+
 // Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
 // One row more is for the place where a stop ends the motion between rows.
 struct MotionRows {
@@ -73,6 +81,9 @@ struct MotionRows {
   double* friction_told;  // frictions x TOLD_NUMBERS
   double* work;           // 2: put in, lost; kg, length units, s
   unsigned char* flags;   // StageFlag
+  // Where there are more rows than these, which then are a block: it is handed on whenever it is full and another row
+  // comes, so that the last rows stay here. Null: all rows are here.
+  RowTaker* taker = nullptr;
 };
 
 class ChartedMotion : public Motion {
@@ -99,6 +110,7 @@ class ChartedMotion : public Motion {
   bool move(int lane, int which, double time, double* y) override;
   bool finds_more(int lane) override;
   bool gives_up(int lane) const override;
+  bool is_left(int lane) const override { return left_[lane]; }
 
   // Joints (numbers of frictions) that a lane ends by: without an answer, met again and again, or just starting to slip.
   std::vector<int> undecided_joints(int lane, const LaneReport& report) const;
@@ -119,6 +131,8 @@ class ChartedMotion : public Motion {
   bool is_next_to_singular(int lane) const;
   // The largest kinetic energy of a lane at the ends of its steps so far.
   double energy(int lane) const { return energy_[lane]; }
+  // The number of the first row that is in the arrays of a lane.
+  long first_row(int lane) const { return first_row_[lane]; }
   // y at the start: u = 0, the rates of u, nothing done.
   std::vector<double> start() const;
 
@@ -211,6 +225,7 @@ class ChartedMotion : public Motion {
   long jacobian_place(const Block& block, int equation, int unknown) const;
   ChartMatrix jacobian_of(const Packed& entries, int lane) const;
   void continue_turns(int lane, const Packed& found);
+  long place_of(int lane, long row);
   void write_row(int lane, long row, const Stage& at, const double* done);
 
   // charted_crossings.cpp
@@ -272,6 +287,8 @@ class ChartedMotion : public Motion {
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
   std::vector<int> stopped_;        // lanes
   std::vector<long> next_row_;      // lanes
+  std::vector<long> first_row_;     // lanes: of the block
+  std::vector<bool> left_;          // lanes: whose rows are wanted no more
   std::vector<double> energy_, lightest_, lightest_start_, growth_;  // lanes
   Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_, trial_;

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "forces/energy.hpp"
-#include "response/regular_band.hpp"
+#include "rows/regular_band.hpp"
 
 namespace {
 

@@ -30,7 +30,7 @@ Refusal respond_pack(const ResponseTask& task, const MotionUnit& unit, long firs
   }
   IntegratorSettings settings = task.settings;
   MotionLimits limits = task.limits;
-  const long moments = rows[0].rows;
+  const long moments = task.moments < 0 ? rows[0].rows : task.moments;
   limits.longest = __builtin_inf();
   if (reads_time(*starts[0].plan) && moments > 0) {
     settings.dense_rows = (int)std::min<long>(moments + 1, 1 << 30);
@@ -44,7 +44,7 @@ Refusal respond_pack(const ResponseTask& task, const MotionUnit& unit, long firs
   CHECK(reached.refusal());
   const std::vector<LaneReport>& found = *reached;
   for (int l = 0; l < unit.lanes && first + l < count; ++l)
-    (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.undecided_joints(l, found[l]),
+    (*reports)[first + l] = {found[l], motion.first_row(l), motion.stopped_by(l), motion.undecided_joints(l, found[l]),
                              motion.lightest(l), motion.growth(l), motion.energy(l), motion.last_place(l), motion.crossings(l), motion.touches(l),
                              motion.branch_point_near(l), motion.is_next_to_singular(l)};
   return {};

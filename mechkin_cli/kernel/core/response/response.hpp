@@ -7,6 +7,7 @@ struct ResponseTask {
   std::vector<MotionStart> starts;  // one a variant, plans of one structure
   std::vector<MotionRows> rows;     // likewise
   const double* times;              // rows: all variants have the same
+  long moments = -1;                // how many; -1: as many as the first variant's rows
   std::vector<MotionStop> stops;
   const DrivenLaws* driven;         // null: nothing is driven
   MotionLimits limits;
@@ -15,6 +16,7 @@ struct ResponseTask {
 
 struct ResponseReport {
   LaneReport lane;
+  long first;  // the number of the first row in its arrays
   int stop;  // that ended it, -1: none
   std::vector<int> joints;  // frictions that it ended by
   double lightest;  // see ChartedMotion::lightest

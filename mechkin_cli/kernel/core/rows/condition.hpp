@@ -2,7 +2,8 @@
 //
 // It is estimated to 1 % from the factors that Newton or the velocities need anyway. A lane where that is not enough (a
 // block near singular, or factors of a place too far from the closed one) is computed by Jacobi rotations to rounding;
-// so is every overconstrained block.
+// so is every overconstrained block, and every one where it is asked for, but for bands: those below the limit are known
+// well enough to say that they are below it.
 #pragma once
 
 #include "rows/condition_estimate.hpp"
@@ -14,6 +15,9 @@ namespace {
 // The largest condition that the estimate stands for: well below 1e7, where rows count as near singular
 // (tolerances.CONDITION_NEAR_SINGULAR), so that no row's verdict hangs on the estimate's 1 %.
 constexpr double ESTIMATED_CONDITION = 1e6;
+// Unknowns of a band up to which it is computed to rounding beyond that. Rotations take the cube of their number; and one
+// singular value that lies so far below most others comes out of Lanczos' method long before its last step.
+constexpr int MOST_ROTATED = 120;
 // The largest product of the condition and the way from the factored to the closed place, which is about the relative
 // error of the smallest singular value that it causes: a twentieth of the 1 % that the estimate promises.
 constexpr double FACTORS_OFF = 5e-4;
@@ -76,18 +80,19 @@ inline void factor_closed(const Plan& p, Workspace& w, int index, F&& keep_jacob
 template <class F>
 inline void judge_blocks(const Plan& p, int index, const Request& r, Judged* pack, int count, F&& keep_jacobian) {
   const bool square = p.block[index].rows == p.block[index].size;
-  const bool by_newton = square && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
+  const bool has_band = p.block[index].band_entries > 0, is_large = has_band && p.block[index].size > MOST_ROTATED;
+  const bool by_newton = square && !is_large && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
   const auto side_of = [&](const Judged& j) { return matrices_of(p, j.w, index).side(); };
   for (int k = 0; k < count; ++k) {
     if (!by_newton) factor_closed(p, pack[k].w, index, [&](const BlockMatrices& at) { keep_jacobian(k, at); });
     pack[k].side = side_of(pack[k]), pack[k].condition = Pack(0.0);
   }
   if (!(r.demand & DEMAND_CONDITION)) return;
-  const bool estimates = square && !(r.demand & DEMAND_SINGULAR);
+  const bool estimates = square && (has_band || !(r.demand & DEMAND_SINGULAR));
   if (estimates) estimate_conditions(p, index, pack, count);
   for (Judged* j = pack; j < pack + count; ++j) {
     Mask serves = all_lanes(estimates);
-    if (estimates) serves = j->condition <= Pack(ESTIMATED_CONDITION);
+    if (estimates && !is_large) serves = j->condition <= Pack(ESTIMATED_CONDITION);
     if (by_newton) serves = serves & (j->condition * j->closed.last_step <= Pack(FACTORS_OFF));
     if (all(serves)) continue;
     if (by_newton) block_screws(p, j->w, p.block[index]);

@@ -110,13 +110,9 @@ struct BlockMatrices {
 };
 inline BlockMatrices matrices_of(const Plan& p, const Workspace& w, int block) {
   const Block& at = p.block[block];
-  BlockMatrices r = {w.jacobian, w.multiplier, w.reflector, w.swap, at.rows, at.size, nullptr, at.charts, at.rows * at.size};
-  if (at.band_entries) r.row = p.band + at.column_begin, r.entries = at.band_entries;
-  for (int b = 0; b < block; ++b) {
-    const int m = p.block[b].rows, n = p.block[b].size;
-    r.jacobian += m * n, r.swap += n * (n - 1) / 2, r.multiplier += m, r.reflector += 2 * n;  // a band is the last
-  }
-  return r;
+  const BandRow* const row = at.band_entries ? p.band + at.column_begin : nullptr;
+  return {w.jacobian + at.jacobian_at, w.multiplier + at.equation_at, w.reflector + 2 * at.column_begin, w.swap + at.swap_at,
+          at.rows, at.size, row, at.charts, row ? at.band_entries : at.rows * at.size};
 }
 
 // The Jacobian of a block with a band.

@@ -143,9 +143,9 @@ struct RowPack {
       if (holds(r, other)) first += p.block[other].rows;
     return writer(base + first * in.rows);
   }
-  void write_jacobian(const BlockMatrices& at) const {
+  void write_jacobian(int b, const BlockMatrices& at) const {
     if (!r.jacobian) return;
-    const long first = at.jacobian - w.jacobian;
+    const long first = p.block[b].full_at;
     for (int e = 0; !at.row && e < at.m * at.n; ++e) writer(r.jacobian).put(first + e, at.jacobian[e]);
     for (int e = 0; at.row && e < at.m * at.n; ++e) writer(r.jacobian).put(first + e, at.entry(e / at.n, e % at.n));
   }
@@ -156,7 +156,7 @@ struct RowPack {
     if (!all(near)) near = near | (residual_with_rounding(p, w, p.block[b], r.accept) <= Pack(r.accept));
     converged = converged & near;
     side = side & block_side_conditions(p, w, p.block[b]);
-    write_jacobian(matrices_of(p, w, b));
+    write_jacobian(b, matrices_of(p, w, b));
   }
   // How far a block closed; a NaN wins.
   void take_closed(const Closed& closed) {
@@ -177,7 +177,7 @@ struct RowPack {
     const BlockMatrices at = matrices_of(p, w, b);
     const Pack inverse = *at.jacobian;
     block_screws(p, w, block);
-    if (r.jacobian) writer(r.jacobian).put(at.jacobian - w.jacobian, explicit_slope(p, w, b));
+    if (r.jacobian) writer(r.jacobian).put(block.full_at, explicit_slope(p, w, b));
     if (r.side) writer(r.side).put(b, copysign(Pack(1.0), inverse));
     if (r.pivot) writer(r.pivot).put(b, at.least());
     if (!(r.demand & DEMAND_CONDITION)) return;
@@ -266,7 +266,7 @@ inline void close_rows(const Plan& p, const Request& r, RowPack* pack, int count
   for (int k = 0; k < count; ++k) pack[k].take_closed(closed[k]);
   if (!r.demand) return;
   Judged judged[] = {{pack[0].w, closed[0], {}, {}}, {pack[count - 1].w, closed[1], {}, {}}};
-  judge_blocks(p, b, r, judged, count, [&](int k, const BlockMatrices& at) { pack[k].write_jacobian(at); });
+  judge_blocks(p, b, r, judged, count, [&](int k, const BlockMatrices& at) { pack[k].write_jacobian(b, at); });
   for (int k = 0; k < count; ++k) pack[k].take_verdict(b, judged[k]);
 }
 

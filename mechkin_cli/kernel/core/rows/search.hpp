@@ -44,6 +44,53 @@ inline void damped_step(Workspace& w, const BlockMatrices& at, Pack damping) {
   for (int i = 0; i < n; ++i) w.right[i] = gradient[i];
 }
 
+// The same with a band: the normal equations hold two unknowns where some equation holds both. They are positive definite, so
+// that no rows are exchanged.
+inline void damped_step_by_band(Workspace& w, const BlockMatrices& at, Pack damping) {
+  const Band f = at.band();
+  const int n = at.n;
+  int wide = 1;  // entries of a row up to the diagonal
+  for (int e = 0, u = 0; e < n; ++e) {
+    while (f.row[u].end <= e) ++u;
+    wide = f.row[e].reach - u > wide ? f.row[e].reach - u : wide;
+  }
+  Pack *const normal = w.scratch, *const gradient = at.multiplier;
+  const auto entry = [&](int i, int j) -> Pack& { return normal[i * wide + j - i + wide - 1]; };
+  for (int k = 0; k < n * wide; ++k) normal[k] = 0.0;
+  for (int u = 0; u < n; ++u) gradient[u] = 0.0;
+  for (int e = 0, first = 0; e < n; ++e) {
+    while (f.row[first].end <= e) ++first;
+    const int reach = f.row[e].reach;
+    for (int i = first; i < reach; ++i) {
+      if (f.row[i].begin > e || f.row[i].end <= e) continue;
+      const Pack a = *f.in_column(i, e);
+      gradient[i] -= a * w.right[e];
+      for (int j = first; j <= i; ++j)
+        if (f.row[j].begin <= e && f.row[j].end > e) entry(i, j) += a * *f.in_column(j, e);
+    }
+  }
+  for (int i = 0; i < n; ++i) entry(i, i) += damping * (entry(i, i) + Pack(1e-6));  // as in damped_step
+  for (int k = 0; k < n; ++k) {
+    const Pack inverse = Pack(1.0) / entry(k, k);
+    const int end = k + wide < n ? k + wide : n;
+    for (int i = k + 1; i < end; ++i) {
+      const Pack l = entry(i, k) * inverse;
+      for (int j = k + 1; j <= i; ++j) subtract_product(entry(i, j), l, entry(j, k));
+      subtract_product(gradient[i], l, gradient[k]);
+    }
+    // the columns above the diagonal of L^T are those below it of L D
+    gradient[k] *= inverse;
+    entry(k, k) = inverse;
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    const int end = k + wide < n ? k + wide : n;
+    Pack sum = 0.0;
+    for (int i = k + 1; i < end; ++i) sum += entry(i, k) * gradient[i];
+    gradient[k] -= sum * entry(k, k);
+  }
+  for (int i = 0; i < n; ++i) w.right[i] = gradient[i];
+}
+
 // Runs one pack of starts in w.q to the end; returns the residuals.
 inline Pack search_block(const Plan& p, Workspace& w, int index, int iterations, double accept) {
   const Block& b = p.block[index];
@@ -56,9 +103,9 @@ inline Pack search_block(const Plan& p, Workspace& w, int index, int iterations,
     const Mask ended = (residual <= Pack(accept)) | (damping > Pack(scale.stuck));
     if (all(ended)) break;
     block_screws(p, w, b);
-    block_jacobian(p, w, index, at.jacobian);
+    find_jacobian(p, w, index, at);
     const Pack before = sum_of_squares(w.right, b.rows);
-    damped_step(w, at, damping);
+    at.row ? damped_step_by_band(w, at, damping) : damped_step(w, at, damping);
     for (int s = 0; s < p.states; ++s) w.saved[s] = w.q[s];
     advance_block(p, w, index, w.right, ~ended);
     place_block(p, w, b);

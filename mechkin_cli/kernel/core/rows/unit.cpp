@@ -2,6 +2,7 @@
 // MECHKIN_UNIT set by the build.
 #include "rows/unit.hpp"
 
+#include "rows/band_steps.hpp"
 #include "rows/condition.hpp"
 #include "arithmetic/elementwise.hpp"
 #include "rows/row_run.hpp"
@@ -51,7 +52,8 @@ constexpr void (*replay_jets)(const Tape&, const double*, const double*, double*
 #endif
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, prepare, run_row, run_rows,
-                         search_rows, elementwise, interpolate, replay_size, replay, jets_size, replay_jets};
+                         search_rows, band_room, judge_band_step, elementwise, interpolate, replay_size, replay, jets_size,
+                         replay_jets};
 
 }  // namespace
 

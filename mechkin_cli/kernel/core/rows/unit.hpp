@@ -28,6 +28,15 @@ struct Hermite {
   const double* counted;  // columns: turns that all of these have besides
 };
 
+// A step of a block with a band from one place to another by way of a third half way, their Jacobians full and row by row.
+struct BandStep {
+  const double *from, *middle, *to;
+  double limit;
+  bool is_regular;  // whether no matrix of the segments between them is singular
+  double danger;    // about the spectral radius of J_to^-1 J_from - I
+  double least;     // at most the least singular value of J_to
+};
+
 struct KernelUnit {
   int lanes;
   const TreeType* tree_types;  // TREE_CODES
@@ -40,6 +49,9 @@ struct KernelUnit {
   // Rows [begin, end) alone; what a row gets does not depend on the cut.
   void (*run_rows)(const Plan&, const Request&, long begin, long end, char* workspace);
   void (*search_rows)(const Plan&, const SearchRequest&, long begin, long end, char* workspace);
+  // Of a block with a band; the room is for any of them, none where there are none.
+  long (*band_room)(const Plan&);
+  void (*judge_band_step)(const Plan&, int block, BandStep*, char* room);
   void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
   void (*interpolate)(const Hermite&);
   long (*replay_size)(const Tape&);

@@ -376,7 +376,9 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
     if (!carries(k)) continue;
     double danger = own_danger;
     const bool same = own_[k] ? own_same
-                              : is_regular_segment(Factored(block_matrix(a.jacobian, k)), block_matrix(half.jacobian, k),
+                              : has_band(k)
+                                  ? is_regular_band(k, a.jacobian, half.jacobian, b->jacobian, &danger, &b->singular[k])
+                                  : is_regular_segment(Factored(block_matrix(a.jacobian, k)), block_matrix(half.jacobian, k),
                                                    Factored(block_matrix(b->jacobian, k)), limits_.radius, &danger,
                                                    &b->singular[k]);
     b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);

@@ -34,6 +34,7 @@ class Arc : public Stepper {
   bool owns(int block) const { return own_[block]; }
   bool carries(int block) const { return own_[block] || before_[block] || carried_[block]; }
   // Danger and least pivot of its own matrix.
+  int equations() const { return rows_; }
   double own_danger(const Node& node) const { return node.danger[first_]; }
   double own_pivot(const Node& node) const { return node.pivot[first_]; }
   const std::vector<char>& before() const { return before_; }

@@ -27,11 +27,20 @@ bool is_regular_segment(const Factored& a, const Matrix& middle, const Factored&
 }
 
 Matrix Stepper::block_matrix(const std::vector<double>& jacobian, int block) const {
-  long at = 0;
-  for (int b = 0; b < block; ++b) at += plan_.block[b].rows * plan_.block[b].size;
+  const long at = plan_.block[block].full_at;
   Matrix matrix(plan_.block[block].rows, plan_.block[block].size);
   std::copy_n(jacobian.begin() + at, matrix.a.size(), matrix.a.begin());
   return matrix;
+}
+
+bool Stepper::is_regular_band(int block, const std::vector<double>& from, const std::vector<double>& middle,
+                              const std::vector<double>& to, double* danger, double* least) {
+  if (band_room_.empty()) band_room_.resize(unit_.band_room(plan_));
+  const long at = plan_.block[block].full_at;
+  BandStep step = {from.data() + at, middle.data() + at, to.data() + at, limits_.radius, false, 0.0, 0.0};
+  unit_.judge_band_step(plan_, block, &step, band_room_.data());
+  *danger = step.danger, *least = std::fmin(*least, step.least);
+  return step.is_regular;
 }
 
 void Stepper::middle(const Node& a, const Node& b, std::vector<double>* state) const {
@@ -45,7 +54,7 @@ void Stepper::middle(const Node& a, const Node& b, std::vector<double>* state) c
 
 const std::vector<Factored>& Stepper::factors(const Node& node) const {
   for (int k = (int)node.factored.size(); k < plan_.blocks; ++k)
-    node.factored.emplace_back(block_matrix(node.jacobian, k));
+    node.factored.emplace_back(has_band(k) ? Matrix() : block_matrix(node.jacobian, k));
   return node.factored;
 }
 
@@ -67,8 +76,9 @@ bool Stepper::same_side(const Node& a, Node* b) {
   b->least = HUGE_VAL;
   for (int k = 0; k < plan_.blocks; ++k) {
     double danger = 0.0;
-    same = is_regular_segment(from[k], block_matrix(half_way_, k), to[k], limits_.radius, &danger,
-                              &b->singular[k]) && same;
+    same = (has_band(k) ? is_regular_band(k, a.jacobian, half_way_, b->jacobian, &danger, &b->singular[k])
+                        : is_regular_segment(from[k], block_matrix(half_way_, k), to[k], limits_.radius, &danger,
+                                             &b->singular[k])) && same;
     b->danger[k] = danger / std::fabs(h), b->least = lesser(b->least, b->singular[k]);
   }
   return same;

@@ -157,6 +157,10 @@ class Stepper {
   void middle(const Node& a, const Node& b, std::vector<double>* state) const;
   // A block's matrix among those of a node.
   Matrix block_matrix(const std::vector<double>& jacobian, int block) const;
+  bool has_band(int block) const { return plan_.block[block].band_entries > 0; }
+  // As is_regular_segment, of a block with a band.
+  bool is_regular_band(int block, const std::vector<double>& from, const std::vector<double>& middle,
+                       const std::vector<double>& to, double* danger, double* least);
   bool turned_too_far(const Node& a, const Node& b) const;
   bool looks_back(const Node& a, const Node& b, double tolerance);
   void size_node(Node* node) const;
@@ -193,6 +197,7 @@ class Stepper {
   std::vector<char> upstream_;  // blocks x blocks, where it was needed
   // room for the states that are guessed, for those that a node looks back at, and for the Jacobians half way
   std::vector<double> guess_, ahead_, back_, half_way_;
+  std::vector<char> band_room_;  // from when it is first asked for
 };
 
 // Whether the segments from one matrix to another, by way of a third half way, hold no singular one: the least of the

@@ -1,0 +1,159 @@
+"""Times an equilibrium of the RCSR with springs, and rows of a sweep at rest against driven ones.
+
+    python -m benchmarks.equilibria [--rounds N]
+
+Printed are the time of the kernel's calls for one equilibrium with its verdict and their number,
+the whole time of the search, and the time of a row of a sweep at rest in parts of that of the same
+row driven, for sweeps of one turn with several steps. Runs take turns, so that a slow moment of the
+machine meets each, and the least time of the processor counts.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from time import perf_counter, process_time
+
+import numpy as np
+
+from mechkin_cli import statics
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.model.model import Model, loads
+from mechkin_cli.response import prepare
+from mechkin_cli.session import kernel_run, session as session_module
+
+ROUNDS = 7
+STEPS = (5.0, 1.0, 0.1)
+"""Degrees from row to row."""
+
+LEVER = """
+format: 1
+plane: xy
+units: {length: mm, force: N}
+links:
+  crank: {mass: 1, center_of_mass: [20, 20]}
+  coupler: {mass: 2, center_of_mass: [60, 70]}
+  rocker: {mass: 1.5, center_of_mass: [110, 40]}
+  bob: {mass: 0.7, center_of_mass: [150, 30]}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: R, links: [crank, coupler], point: [0, 40]}
+  C: {type: R, links: [coupler, rocker], point: [120, 80]}
+  D: {type: R, links: [rocker, ground], point: [100, 0]}
+  E: {type: R, links: [rocker, bob], point: [120, 80]}
+points: {P: {link: rocker, at: [110, 40]}, Q: {link: ground, at: [200, 60]}}
+loads:
+  - {type: gravity, g: [0, -9810]}
+  - {type: spring, joint: E, coordinate: theta, stiffness: 300 N*mm/rad}
+  - {type: spring, between: [P, Q], stiffness: 1 N/mm, free: 60}
+"""
+
+
+def rcsr() -> Model:
+    """The RCSR of the dissertation with gravity, a spring at its crank and one at its rocker."""
+    text = Path("mechanisms/dissertation/rcsr.yaml").read_text(encoding="utf-8")
+    head = text[: text.index("\nmotion:")]
+    return loads(
+        head
+        + """
+loads:
+  - {type: gravity, g: [0, 0, -386 in/s^2]}
+  - {type: spring, joint: O1, coordinate: theta, stiffness: 400 lbm*in^2/s^2/rad}
+  - {type: spring, joint: O4, coordinate: theta, stiffness: 900 lbm*in^2/s^2/rad, free: 40 deg}
+equilibria: {one: {near: {O1.theta: 170}}}
+"""
+    )
+
+
+class _TimedPlan:
+    """A plan of the kernel that adds up the time of its runs."""
+
+    def __init__(self, plan: _kernel.Plan, kernel: KernelTime) -> None:
+        self._plan, self._kernel = plan, kernel
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self._plan, name)
+
+    def run(self, **given: object) -> None:
+        """As the plan's."""
+        begin = perf_counter()
+        self._plan.run(**given)  # type: ignore[arg-type]
+        self._kernel.seconds += perf_counter() - begin
+        self._kernel.calls += 1
+
+
+class KernelTime:
+    """Adds up the time of the kernel's calls."""
+
+    def __init__(self) -> None:
+        self.calls, self.seconds = 0, 0.0
+        self._run, self._count = session_module.run_kernel, kernel_run.turn_count
+
+    def __enter__(self) -> KernelTime:
+        def timed(plan: _kernel.Plan, *args: object, **named: object) -> object:
+            return self._run(_TimedPlan(plan, self), *args, **named)  # type: ignore[arg-type]
+
+        def count(plan: _kernel.Plan) -> int:
+            return self._count(getattr(plan, "_plan", plan))
+
+        session_module.run_kernel = timed  # type: ignore[assignment]
+        kernel_run.turn_count = count
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        session_module.run_kernel, kernel_run.turn_count = self._run, self._count
+
+
+def one_equilibrium(rounds: int) -> None:
+    """Of the RCSR, its start being known."""
+    model = rcsr()
+    design = model.design
+    session, response = design.session_of("one"), design.response("one")
+    prepared = prepare(design.problem, response, session=session)
+    statics.balanced(prepared)
+    best, whole, calls = np.inf, np.inf, 0
+    for _ in range(rounds):
+        with KernelTime() as kernel:
+            begin = process_time()
+            found = statics.balanced(prepared)
+            whole = min(whole, process_time() - begin)
+        best, calls = min(best, kernel.seconds), kernel.calls
+    steps = found.found[0][0].steps
+    print(
+        f"RCSR with springs: {steps} steps, {calls} calls of the kernel, {1e6 * best:.0f} us in it,"
+    )
+    print(f"  {1e6 * whole:.0f} us in all")
+
+
+def rows_at_rest(rounds: int, step: float) -> None:
+    """Of the lever with a bob that hangs from it."""
+    count = round(360 / step) + 1
+    swept = f"A.theta: {{from: 0, to: 360, count: {count}}}"
+    resting = LEVER + f"motion: {{inputs: {{{swept}}}, rest: [E.theta]}}\n"
+    values = [float(value) for value in loads(resting).analyze()["E.theta"]]
+    driven = LEVER + f"motion: {{inputs: {{{swept}, E.theta: {{values: {values}}}}}}}\n"
+    best = {resting: np.inf, driven: np.inf}
+    for _ in range(rounds):
+        for text in best:
+            model = loads(text)
+            _ = model.session
+            begin = process_time()
+            model.analyze(["A.effort"], tables=[])
+            best[text] = min(best[text], process_time() - begin)
+    ratio = best[resting] / best[driven]
+    each = 1e6 * best[resting] / count
+    print(f"{count} rows, {step:g} deg apart: {each:.1f} us a row at rest, {ratio:.1f} driven ones")
+
+
+def main() -> None:
+    """Prints the figures."""
+    parser = argparse.ArgumentParser(description="equilibria and rows at rest")
+    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    rounds = parser.parse_args().rounds
+    one_equilibrium(rounds)
+    for step in STEPS:
+        rows_at_rest(rounds, step)
+
+
+if __name__ == "__main__":
+    main()

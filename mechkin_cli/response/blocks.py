@@ -1,0 +1,219 @@
+"""A response in blocks of rows, each of which may be forgotten when the next one is taken.
+
+The kernel marches on in a thread of its own and hands on the rows of a block as it has reached them
+(core/response), so it takes the very steps that it takes where all rows are held. The motion is
+gone through twice: how it ends, and the energies by which its errors are measured, are known behind
+its last row alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from queue import SimpleQueue
+from threading import Semaphore, Thread
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism import CrossingEnd, Span, read_for
+from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.response.report import motion_of, under_way
+from mechkin_cli.response.rows import Prepared, RunEnd, block_of, run_end
+from mechkin_cli.response.runs import integrated, integrated_rows, prepare, read
+from mechkin_cli.sweep import Part, bends
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.mechanism import Problem, ResponseProblem, Wanted
+    from mechkin_cli.response.report import MotionRows
+    from mechkin_cli.response.result import Energies
+    from mechkin_cli.session import Packing, Session
+    from mechkin_cli.show import Floats
+
+
+class _Whole(NamedTuple):
+    """What is known of a motion behind its last row."""
+
+    end: RunEnd
+    energies: Energies | None
+
+
+class ResponseBlocks:
+    """A response that is to be run block by block; arguments and errors are those of `respond`."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        response: ResponseProblem,
+        quantities: Iterable[str],
+        packing: Packing,
+        session: Session | None = None,
+    ) -> None:
+        self._one: Prepared = prepare(problem, response, packing, session)
+        self._packing = packing
+        self.names = tuple(dict.fromkeys(quantities))
+
+    @property
+    def session(self) -> Session:
+        """Of the free motion; its motion is the first moment."""
+        return self._one.free
+
+    @property
+    def start(self) -> AssemblyStart:
+        """The first assembly."""
+        return self._one.start
+
+    @property
+    def run_rows(self) -> int:
+        """The rows of the table: those of the file, or up to a stop."""
+        return self._whole.end.rows if self.in_blocks else self._one.response.rows
+
+    @property
+    def moments(self) -> Floats:
+        """Of the rows, in the file's unit (rows,)."""
+        return self._one.response.moments.written
+
+    @property
+    def driven(self) -> tuple[str, ...]:
+        """The coordinates that go by laws of time."""
+        return tuple(item.name for item in self._one.response.driven)
+
+    @property
+    def asked(self) -> list[Wanted]:
+        """The quantities asked for."""
+        known = self._one.free.problem.quantities()
+        return [known[name] for name in read_for(self.names, known)]
+
+    @cached_property
+    def block_rows(self) -> int:
+        """Rows of a block: as many as take about the memory of a part of a sweep."""
+        plan = self._one.free.plan
+        numbers = plan.states + plan.charts * (plan.columns + 2)
+        rows = tolerances.PART_ROWS
+        while rows > tolerances.LEAST_PART_ROWS and rows * numbers > tolerances.PART_NUMBERS:
+            rows //= 2
+        return rows
+
+    @property
+    def in_blocks(self) -> bool:
+        """Whether the rows are not held: there are many, and the motion goes on in one way. Behind
+        an impact, and up to a jump of a slope, it is another one; and which reactions are unique
+        where constraints are redundant goes by all rows."""
+        one = self._one
+        stops = one.response.stops
+        limits = any(isinstance(stop, CrossingEnd) and stop.limit for stop in stops)
+        return (
+            one.response.rows > self.block_rows
+            and one.begun is not None
+            and not limits
+            and not bends(one.free.problem)
+            and not one.free.is_redundant
+        )
+
+    def parts(self) -> Iterator[Part]:
+        """The rows in order, block by block; one block, where they are held."""
+        if not self.in_blocks:
+            (result,) = integrated([self._one], self._packing)
+            read(result, self.names)
+            yield Part(result, slice(0, result.rows))
+            return
+        end, energies = self._whole
+        done = 0
+        for motion in self._marched():
+            count = min(motion.states.shape[1], end.rows - done)
+            if count > 0:
+                yield self._part(motion, end, Span(done, count, end.rows), energies)
+            done += count
+        # rows that the motion did not come to
+        nothing = replace(motion, states=np.zeros_like(motion.states))
+        while done < end.rows:
+            count = min(self.block_rows, end.rows - done)
+            yield self._part(nothing, end, Span(done, count, end.rows), energies)
+            done += count
+
+    def _part(
+        self, motion: MotionRows, end: RunEnd, place: Span, energies: Energies | None
+    ) -> Part:
+        result = block_of(self._one, motion, end, place)
+        read(result, self.names)
+        result.energies = energies
+        stops = [self._one.response.stops[end.report.stop].words] if end.is_stopped else []
+        result.run_events = (*[""] * (end.rows > len(stops)), *stops)
+        return Part(result, slice(0, place.rows))
+
+    @cached_property
+    def _whole(self) -> _Whole:
+        """How the motion ends, and its energies."""
+        energies: Energies | None = None
+        every, done = self._one.response.rows, 0
+        for motion in self._marched():
+            report, count = motion.report, motion.states.shape[1]
+            end = run_end(self._one, report, motion.count if report.is_over else every)
+            count = min(count, end.rows - done)
+            if count > 0:
+                result = block_of(self._one, motion, end, Span(done, count, every))
+                read(result, ())
+                energies = result.energies_with(energies)
+            done += count
+        return _Whole(end, energies)
+
+    def _marched(self) -> Iterator[MotionRows]:
+        """The motion in blocks of rows, as they are reached; the report of the last one is that of
+        the motion, and the others are under way."""
+        march = _March(self._one, self._packing, self.block_rows)
+        try:
+            yield from march
+        finally:
+            march.leave()
+
+
+class _March:
+    """A motion that is integrated in a thread, a block ahead of whoever takes its rows."""
+
+    def __init__(self, one: Prepared, packing: Packing, rows: int) -> None:
+        self._one, self._packing, self._rows = one, packing, rows
+        self._found: SimpleQueue[MotionRows | BaseException] = SimpleQueue()
+        self._free, self._is_left = Semaphore(1), False
+        # an interrupt ends the process without it
+        self._thread = Thread(target=self._run, name="response", daemon=True)
+        self._thread.start()
+
+    def __iter__(self) -> Iterator[MotionRows]:
+        """The blocks of rows."""
+        while True:
+            found = self._found.get()
+            if isinstance(found, BaseException):
+                raise found
+            is_last = found.report.is_over
+            yield found
+            if is_last:
+                return
+            del found
+            self._free.release()
+
+    def leave(self) -> None:
+        """Ends the thread, whether or not all rows have been taken."""
+        self._is_left = True
+        self._free.release()
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            (last,) = integrated_rows([self._one], self._packing, self._rows, self._take)
+        except BaseException as error:  # raised where rows are taken
+            self._found.put(error)
+        else:
+            self._found.put(last)
+
+    def _take(self, first: int, rows: int, arrays: list[NDArray[Any]]) -> bool:
+        own = [np.array(array[0, ..., :rows], order="C") for array in arrays]
+        for array in arrays:
+            # where no row is written there is none
+            array.fill(np.nan if array.dtype == np.float64 else 0)
+        self._found.put(motion_of(under_way(first, rows, len(own[0])), own))
+        self._free.acquire()
+        return not self._is_left

@@ -1,0 +1,235 @@
+"""Blocks of responses are those of the whole run, bit for bit, whatever their size: the march takes
+the same steps."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+from references import FILE_OF
+
+import mechkin_cli as mk
+from mechkin_cli import tolerances
+from mechkin_cli.__main__ import main
+from mechkin_cli.tables import TableColumn, Words, rows_table
+
+PENDULUM = """format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links: {{bob: {{mass: 1, center_of_mass: [0, -1], inertia: 0.1}}}}
+joints: {{O: {{type: R, links: [ground, bob], point: [0, 0]}}}}
+loads: [{{type: gravity, g: [0, -9.80665]}}]
+responses:
+  swing:
+    start: {{O.theta: 1}}
+    time: {{from: 0, to: {to}, count: {count}}}
+    stop: [{stop}]
+tables:
+  - name: t
+    run: swing
+    columns: [time, O.theta, O.theta_dot, O.force.y, row.event, row.work, row.energy_error]
+    summary: [max, min, mean, rms]
+"""
+DOUBLE = """format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  one: {mass: 1, center_of_mass: [0.5, 0], inertia: 0.1}
+  two: {mass: 2, center_of_mass: [1.5, 0], inertia: 0.2}
+joints:
+  A: {type: R, links: [ground, one], point: [0, 0]}
+  B: {type: R, links: [one, two], point: [1, 0]}
+loads:
+  - {type: gravity, g: [0, -9.80665]}
+  - {type: friction, joint: A, coefficient: 0.3, radius: 0.1}
+responses:
+  fall: {start: {A.theta: 0.3, B.theta: 1}, time: {from: 0, to: 3, count: 101}}
+tables:
+  - {name: t, run: fall, columns: [time, A.theta, B.theta, B.force.x, row.dissipated]}
+"""
+DRIVEN = """format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  one: {mass: 1, center_of_mass: [0.5, 0], inertia: 0.1}
+  two: {mass: 2, center_of_mass: [1.5, 0], inertia: 0.2}
+joints:
+  A: {type: R, links: [ground, one], point: [0, 0]}
+  B: {type: R, links: [one, two], point: [1, 0]}
+loads: [{type: gravity, g: [0, -9.80665]}]
+responses:
+  pull:
+    start: {B.theta: 1}
+    driven:
+      A.theta:
+        law: sequence
+        from: 0.3
+        segments:
+          - {for: 0.5, to: 2.3, law: cycloidal}
+          - {for: 0.5, law: dwell}
+          - {for: 1, to: 0.3, law: harmonic}
+    time: {from: 0, to: 2, count: 61}
+tables:
+  - {name: t, run: pull, columns: [time, A.theta, B.theta, B.theta_ddot, A.effort, row.work]}
+"""
+LOST = """format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links: {bob: {mass: 1, center_of_mass: [0, -1], inertia: 0.1}}
+joints: {O: {type: R, links: [ground, bob], point: [0, 0]}}
+loads: [{type: force, link: bob, point: [0, -1], force: [1 N * sqrt(2 - time / 1 s), 0]}]
+responses:
+  swing: {start: {O.theta: 0}, time: {from: 0, to: 4, count: 41}}
+tables: [{name: t, run: swing, columns: [time, O.theta, row.status]}]
+"""
+TEXTS = {
+    "to the end": PENDULUM.format(to=3, count=61, stop=""),
+    "a stop between rows": PENDULUM.format(
+        to=9, count=91, stop="{value: O.theta, at: 0, count: 3}"
+    ),
+    # the speed is zero at the start, and the swing ends where it began
+    "a stop at a row": PENDULUM.format(to=4, count=41, stop="{value: time, at: 2.5 s}"),
+    "friction": DOUBLE,
+    "a drive": DRIVEN,
+    "rows that are not reached": LOST,
+    "rcsr": FILE_OF["rcsr_response"].read_text(encoding="utf-8"),
+}
+
+
+def cells(column: TableColumn) -> list[str] | list[bytes]:
+    if isinstance(column.values, Words):
+        return [str(text) for text in column.values.array()]
+    return [value.tobytes() for value in np.asarray(column.numbers)]
+
+
+def small_blocks(monkeypatch: pytest.MonkeyPatch, rows: int) -> None:
+    monkeypatch.setattr(tolerances, "PART_ROWS", rows)
+    monkeypatch.setattr(tolerances, "LEAST_PART_ROWS", rows)
+
+
+@pytest.mark.parametrize("rows", [1, 2, 5, 7, 10, 20])
+@pytest.mark.parametrize("name", TEXTS)
+def test_blocks_have_the_bytes_of_the_run(
+    name: str, rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = mk.loads(TEXTS[name])
+    (run,) = (one for one in model.runs if one != "sweep")
+    whole = model.respond(run)
+    tables = [*whole.tables, rows_table(whole.result, run)]
+    expected = {(t.name, c.label): cells(c) for t in tables for c in t.columns}
+    small_blocks(monkeypatch, rows)
+    stream = model.stream(run=run, rows=3)
+    assert stream.in_blocks
+    found: dict[tuple[str, str], list] = defaultdict(list)
+    for block in stream:
+        for table in block.tables:
+            for column in table.columns:
+                assert len(cells(column)) == block.rows <= 3
+                found[table.name, column.label] += cells(column)
+    for part, _ in stream.parts():
+        verdicts = rows_table(part.analysis.result, run)
+        first = part.analysis.result.row_states.span.first
+        for column in verdicts.columns:
+            number = column.label == "row"
+            numbered = column.with_values(column.numbers + first) if number else column
+            found[verdicts.name, column.label] += cells(numbered)
+    assert found == expected
+    assert stream.run_rows == whole.rows == stream.verdicts.rows
+    assert stream.verdicts.complete == whole.complete
+    assert list(map(str, stream.diagnostics)) == list(map(str, whole.diagnostics))
+
+
+def test_a_block_has_the_closed_form() -> None:
+    """A body that falls from rest; 3 * 10^5 rows lie within a few steps."""
+    text = PENDULUM.format(to=2, count=300_001, stop="").replace(
+        "type: R, links: [ground, bob], point: [0, 0]",
+        "type: P, links: [ground, bob], point: [0, 0], axis: [0, -1]",
+    )
+    text = text.replace("O.theta: 1", "O.s: 0").replace("O.theta", "O.s").split("tables:")[0]
+    stream = mk.loads(text).stream(["O.s", "row.work"], run="swing", rows=100_000)
+    assert stream.in_blocks
+    first = 0
+    for block in stream:
+        assert block.first == first
+        assert np.array_equal(block["time"], np.arange(first, first + block.rows) / 150_000)
+        fallen = 0.5 * 9.80665 * block["time"] ** 2
+        assert np.abs(block["O.s"] - fallen).max() < 1e-13 * fallen.max()
+        first += block.rows
+    assert first == 300_001
+
+
+def test_who_leaves_ends_the_march(monkeypatch: pytest.MonkeyPatch) -> None:
+    small_blocks(monkeypatch, 2)
+    stream = mk.loads(TEXTS["to the end"]).stream(run="swing", rows=2)
+    first = next(iter(stream))["O.theta"].tobytes()
+    blocks = iter(stream)
+    assert next(blocks)["O.theta"].tobytes() == first
+    blocks.close()  # type: ignore[attr-defined]
+    assert sum(block.rows for block in stream) == 61
+
+
+def test_a_response_with_limits_is_held(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Behind an impact the motion is another one: its rows come in one piece, and are the same."""
+    text = TEXTS["to the end"] + "limits: {O.theta: {min: -0.5, max: 1.5, restitution: 0.5}}\n"
+    model = mk.loads(text)
+    whole = model.respond("swing")
+    small_blocks(monkeypatch, 2)
+    stream = model.stream(run="swing", rows=7)
+    assert not stream.in_blocks
+    values = np.concatenate([block["O.theta"] for block in stream])
+    assert values.tobytes() == whole["O.theta"].tobytes()
+
+
+def test_too_many_rows_are_not_held(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = mk.loads(TEXTS["to the end"])
+    monkeypatch.setattr(tolerances, "MOST_NUMBERS", 100)
+    with pytest.raises(mk.UsageError, match=r"swing has too many rows .* 61 .*stream\(run"):
+        model.respond("swing")
+    small_blocks(monkeypatch, 10)
+    assert sum(block.rows for block in model.stream(run="swing")) == 61
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:
+    monkeypatch.setattr("sys.argv", ["mechkin", "analyze", *words])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert not ended.value.code
+
+
+@pytest.mark.parametrize("more", [1, 40_000])
+def test_the_command_writes_and_prints_what_it_does_of_a_whole_run(
+    more: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Files and what is printed are those of the whole run, which `md` needs."""
+    count = tolerances.LONG_RUN + more
+    path = tmp_path / "f.yaml"
+    stop = "{value: O.theta, at: 0, count: 4}"
+    path.write_text(PENDULUM.format(to=5, count=count, stop=stop))
+    printed = []
+    for name, formats in (("streamed", "csv"), ("whole", "csv,md")):
+        run(monkeypatch, str(path), "--format", formats, "--out", str(tmp_path / name))
+        printed.append(capsys.readouterr().out.replace(str(tmp_path / name), "out"))
+    assert printed[0] == printed[1]
+    for file in ("t.csv", "t.summary.csv", "swing.rows.csv"):
+        streamed = (tmp_path / "streamed" / file).read_bytes()
+        assert streamed == (tmp_path / "whole" / file).read_bytes()
+
+
+def test_a_response_is_summed_up_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "f.yaml"
+    path.write_text(TEXTS["to the end"])
+    run(monkeypatch, str(path), "--out", str(tmp_path / "whole"))
+    capsys.readouterr()
+    run(monkeypatch, str(path), "--summary-only", "--out", str(tmp_path / "o"))
+    assert re.search(r"\n +rows( +61)+\n", capsys.readouterr().out)
+    assert {file.name for file in (tmp_path / "o").iterdir()} == {"t.summary.csv", ".mechkin-files"}
+    summary = (tmp_path / "o" / "t.summary.csv").read_bytes()
+    assert summary == (tmp_path / "whole" / "t.summary.csv").read_bytes()
