@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import radians, sin
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -161,3 +162,15 @@ def test_what_does_not_take_a_sweep_at_rest_says_so() -> None:
         m.vary({"k": [1, 2]}, ["E.theta"])
     r = m.analyze(errors=True)
     assert all(why for why in r.errors.why.values())
+
+
+def test_blocks_of_a_stream_end_where_the_branch_does() -> None:
+    text = Path("mechanisms/statics/toggle.yaml").read_text(encoding="utf-8")
+    m = mk.loads(text.replace("to: 18", "to: 24"))
+    whole = m.analyze()
+    for rows in (3, 5, 100):
+        blocks = list(m.stream(["A.theta", "row.status"], rows=rows))
+        angles = np.concatenate([block["A.theta"] for block in blocks])
+        assert angles.tobytes() == whole["A.theta"].tobytes()
+        status = np.concatenate([block["row.status"] for block in blocks])
+        assert status.tolist() == whole["row.status"].tolist()
