@@ -158,6 +158,13 @@ class Status(IntEnum):
         return self.name.replace("_", "-")
 
 
+def are(codes: NDArray[np.int8], status: Status) -> Bools:
+    """Which of many rows have a status, the same shape as the codes. Numpy compares with a number
+    in a tenth of the time that it takes with a member of an enumeration."""
+    found: Bools = codes == int(status)
+    return found
+
+
 def has_solution(codes: NDArray[np.int8]) -> Bools:
     """`Status.has_solution` of many rows, the same shape as the codes."""
     return _marked("has_solution")[codes]

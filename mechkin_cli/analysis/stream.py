@@ -103,7 +103,8 @@ class Stream:
             verdicts.add(part.result, part.own)
             rows = part.result.row_states
             notes.add(rows.diagnostics, rows.span.first, part.own)
-            self.branch = part.result.mode, part.result.how
+            if not any(self.branch):
+                self.branch = part.result.mode, part.result.how
             if self.run != SWEEP:
                 error = np.asarray(part.result.quantity("row.energy_error").value)
                 verdicts.measure("energy error", error[part.own])

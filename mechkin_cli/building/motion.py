@@ -116,6 +116,7 @@ def _swept(
     joints: Mapping[str, Joint],
     per_row: int | None,
     rows: NDArray[np.int64] | None,
+    known: _Sections | None = None,
 ) -> MotionInputs | None:
     """The motion in some rows, by their numbers; None: in all, or in a sample of very many. None
     where an error was noted."""
@@ -124,7 +125,10 @@ def _swept(
     if section.time is not None:
         clock = spaced_moments(fields, path, section.time, per_row, in_parts=True, rows=rows)
     path = ("motion", "inputs")
-    motion = build_inputs(fields, path, section.inputs, joints, per_row, clock, grid, rows=rows)
+    inputs = section.inputs
+    motion = build_inputs(
+        fields, path, inputs, joints, per_row, clock, grid, rows=rows, known=known
+    )
     return (
         motion if motion is None or not section.rest else _resting(fields, section, motion, joints)
     )
@@ -182,11 +186,14 @@ def _rows_of(
     fields: Fields, section: MotionSection, joints: Mapping[str, Joint]
 ) -> Callable[[NDArray[np.int64]], MotionInputs]:
     """What builds the motion in some rows, by their numbers; it raises InvalidFile where what the
-    file says does not hold there."""
+    file says does not hold there. Numbers that go by no moments are read once for all parts."""
+    known: list[_Sections] = []
 
     def build(rows: NDArray[np.int64]) -> MotionInputs:
         own = replace(fields, diagnostics=[], refused=set(fields.refused))
-        motion = _swept(own, section, joints, None, rows)
+        if section.time is None and not known:
+            known.append(_read(own, ("motion", "inputs"), section.inputs, joints, None))
+        motion = _swept(own, section, joints, None, rows, known[0] if known else None)
         if motion is None or own.error_count:
             raise InvalidFile([one for one in own.diagnostics if one.severity == "error"])
         return motion
@@ -204,6 +211,7 @@ def build_inputs(
     pair: tuple[str, ...] = (),
     *,
     rows: NDArray[np.int64] | None = None,
+    known: _Sections | None = None,
 ) -> MotionInputs | None:
     """Driven coordinates over the rows and between them; None where an error was noted.
 
@@ -217,11 +225,12 @@ def build_inputs(
         pair: the two inputs of a grid, the slow one first.
         rows: the numbers of those that are wanted, which rise; None: all, or of the sweep a sample
             of very many.
+        known: what the sections say, where they have been read.
     """
     errors = fields.error_count
     time = None if clock is None else clock.time
     with np.errstate(all="ignore"):
-        read, following = _read(fields, path, sections, joints, clock)
+        read, following = known or _read(fields, path, sections, joints, clock)
     run_rows = clock.run_rows if clock else _row_count(fields, pair, read)
     if fields.error_count > errors:
         return None
@@ -349,13 +358,16 @@ class _Read(NamedTuple):
         return self.orders if rows is None else self.orders[:, rows]
 
 
+_Sections = tuple[dict[str, _Read], dict[str, "FollowingInput"]]
+
+
 def _read(
     fields: Fields,
     path: Path,
     sections: Mapping[str, InputMotion | HeldCoordinate],
     joints: Mapping[str, Joint],
     clock: Clock | None,
-) -> tuple[dict[str, _Read], dict[str, FollowingInput]]:
+) -> _Sections:
     """The inputs that follow none, and the sections of those that follow."""
     orders: dict[str, _Read] = {}
     following: dict[str, FollowingInput] = {}

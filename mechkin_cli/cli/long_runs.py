@@ -284,6 +284,7 @@ class _Table:
         self._sums: RunningSummary | None = None
         if words:
             self._sums = RunningSummary(words, layout.columns, stream.along, stream.inputs)
+        self._shows_rows = not command.summary_only
         self._first: Columns | None = None
         self._last: Columns | None = None
 
@@ -295,6 +296,8 @@ class _Table:
             self._sums.add(columns, self._stream.places(part)[own])
         table = Columns(self.layout.name, self.layout.title, columns)
         table = table if self._labels is None else table.chosen(self._labels)
+        if not self._shows_rows:
+            return table
         if self._first is None:
             self._first = _copied(table, slice(0, ENDS))
         self._last = _last_of(self._last, _copied(table, slice(-ENDS, None)))

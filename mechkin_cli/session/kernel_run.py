@@ -46,6 +46,7 @@ _VELOCITY, _ACCELERATION, _JERK, _FORCES = (
     int(part) for part in (Demand.VELOCITY, Demand.ACCELERATION, Demand.JERK, Demand.FORCES)
 )
 _CONDITION, _POWER = int(Demand.CONDITION), int(Demand.POWER)
+_GOOD = int(RowFlag.GOOD)
 
 
 class Chart(NamedTuple):
@@ -186,7 +187,7 @@ class Batch(NamedTuple):
     @property
     def good(self) -> NDArray[np.bool_]:
         """Rows that are closed."""
-        return np.equal(self.flags, RowFlag.GOOD)
+        return np.equal(self.flags, _GOOD)
 
 
 def run(
@@ -269,7 +270,8 @@ def run(
     flags = np.empty(count, dtype=np.uint8)
     loads = np.empty((varying, *shape)) if varying else None
     undefined = np.empty(count, dtype=np.uint8) if varying else None
-    # each by name: a mapping among the arguments would cost a short call a tenth
+    # each by name, in the order in which the kernel looks for them: a mapping among the arguments
+    # would cost a short call a tenth
     call(
         inputs=given(inputs),
         guess=given(guess),
@@ -279,12 +281,12 @@ def run(
         constraint_rates=given(transmitted) if forced else None,
         turned=None if turned is None else given(turned),
         whole=None if whole is None else given(whole),
-        full=None if full is None else given(full),
-        time=None if time is None else _contiguous(time),
         chart=None if directions is None else given(directions),
         chart_rates=given(chart_rates) if moving else None,
         chart_accelerations=given(chart_accelerations) if accelerating else None,
         friction_told=given(friction) if rubbing else None,
+        full=None if full is None else given(full),
+        time=None if time is None else _contiguous(time),
         outputs=outputs,
         states=states,
         values=values,
@@ -295,9 +297,9 @@ def run(
         side=side,
         condition=condition,
         power_error=power_error,
+        flags=flags,
         loads=loads,
         undefined=undefined,
-        flags=flags,
         demand=demand,
         shift=ask.shift,
         iterations=ask.iterations,

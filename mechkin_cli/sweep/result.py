@@ -33,7 +33,7 @@ from mechkin_cli.sweep.rows import (
     reaction_rounding,
 )
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
-from mechkin_cli.verdict import Proof, Status, has_solution
+from mechkin_cli.verdict import Proof, Status, are, has_solution
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -56,8 +56,8 @@ def columns_of(rows: SweepRows, mechanism: Mechanism, readout: Readout, batch: B
     assert values is not None
     if not rows.reached.all():
         values[:, ~rows.reached] = np.nan
-    unclear = rows.status == Status.rank_unclear
-    some_unclear = bool(unclear.any())
+    unclear = are(rows.status, Status.rank_unclear)
+    some_unclear = np.count_nonzero(unclear) > 0
     columns = {}
     for quantity in readout.wanted:
         slot = readout.slots[quantity.name]
@@ -229,7 +229,7 @@ class Result:
     @property
     def sound(self) -> bool:
         """Whether every row is `ok`."""
-        return bool((self.status == Status.ok).all())
+        return np.count_nonzero(are(self.status, Status.ok)) == self.status.size
 
     @property
     def condition(self) -> Floats:

@@ -27,7 +27,7 @@ from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Ask, Batch, KernelInputs, continuous_angle
 from mechkin_cli.structure import SolverGraph
 from mechkin_cli.units import FORCE
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import Status, are
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -145,7 +145,7 @@ class SweepRows:
     @property
     def has_failed(self) -> bool:
         """Whether some row did not close."""
-        return bool((self.status == Status.not_converged).any())
+        return np.count_nonzero(are(self.status, Status.not_converged)) > 0
 
 
 class RunRows(Protocol):

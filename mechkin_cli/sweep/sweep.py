@@ -47,7 +47,7 @@ from mechkin_cli.sweep.parts import Part, has_parts, joined_rows, parts_of
 from mechkin_cli.sweep.result import Result
 from mechkin_cli.sweep.slopes import bending, slope_notes
 from mechkin_cli.units import TIME
-from mechkin_cli.verdict import Status, by_condition, rates_are_clear
+from mechkin_cli.verdict import Status, are, by_condition, rates_are_clear
 
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
@@ -232,7 +232,7 @@ class Sweep:
         notes += [*actuation_notes(result), *locked_pose_notes(result)]
         notes += slope_notes(result)
         failed = any(note.severity == "error" for note in notes)
-        if result.solved.any() and not failed:
+        if np.count_nonzero(result.solved) and not failed:
             notes += unrated_notes(session.problem, self.asked, self.unasked)
         return result
 
@@ -282,22 +282,24 @@ def _closed(
 def _closed_once(session: Session, start: AssemblyStart, ask: Ask, rows: SweepRows) -> Result:
     """The same of rows that were followed; those that do not close are no longer marked as
     reached."""
+    # of few rows `any` and `all` take five times as long as counting, and short runs are many
     result = Result(session, start, rows, motion_between)
-    if not rows.reached.any():
+    if not np.count_nonzero(rows.reached):
         return result
     batch = result.run(ask)
     slow = rows.reached & ~batch.good
-    if result.graph.blocks and (slow | rows.reached & _is_near_singular(batch)).any():
+    near = slow | rows.reached & _is_near_singular(batch)
+    if result.graph.blocks and np.count_nonzero(near):
         batch = _closed_on_fold(result, ask)
         # what takes more steps and is no fold had a wrong guess
         slow &= ~_is_near_singular(batch)
     failed = slow | _failed(batch, rows)
-    if failed.any():
+    if np.count_nonzero(failed):
         rows.status[failed] = Status.not_converged
         rows.diagnostics.append(not_converged_note(rows, batch.residual))
         rows.reached &= ~failed
-    if rows.reached.any():
-        if rows.reached.all():
+    if reached := np.count_nonzero(rows.reached):
+        if reached == rows.reached.size:
             rows.states = batch.states
         else:
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
@@ -331,7 +333,7 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
     """
     limit = rows.limit
     failed: Bools = rows.reached & ~(batch.good & (batch.correction <= limit))
-    if batch.condition is not None and failed.any():
+    if batch.condition is not None and np.count_nonzero(failed):
         # next to singular places branches may be nearer than a position is known to rounding
         known = np.where(
             batch.condition <= tolerances.CONDITION_RANK_UNCLEAR,
@@ -343,7 +345,7 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
         limit = np.where(on_fold, tolerances.FOLD_CORRECTION * limit, limit)
         failed = rows.reached & ~(batch.good & (batch.correction <= limit))
     assert batch.side is not None
-    if not (batch.side != batch.side[:, :1]).any():
+    if not np.count_nonzero(batch.side != batch.side[:, :1]):
         return failed
     # on a fold or a branch point a sign is rounding
     certain = rows.reached.copy()
@@ -368,7 +370,7 @@ def judge_condition(
     from mechkin_cli.sweep.dead_centre import few_digits_notes, judge_dead_centres
 
     if not rates_are_clear(condition).all():
-        judged = rows.reached & (rows.status == Status.ok)
+        judged = rows.reached & are(rows.status, Status.ok)
         rows.status[judged] = by_condition(condition[judged])
         judge_dead_centres(session, rows, condition)
         rows.diagnostics += condition_notes(rows, condition)
@@ -422,8 +424,8 @@ def row_notes(result: Result, asked: Sequence[Wanted], *, rests_on_reactions: bo
             notes += idle.holding_notes(problem, found)
     if problem.stopped and rows.reached.any():
         notes.append(first_order_note(problem))
-    unclear = rows.status == Status.rank_unclear
-    if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
+    unclear = are(rows.status, Status.rank_unclear)
+    if np.count_nonzero(unclear) and (session.is_redundant or unclear[rows.reached].all()):
         said = {diagnostic.code for diagnostic in rows.diagnostics}
         from mechkin_cli.sweep.branch_end import input_faults
 

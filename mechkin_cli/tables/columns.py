@@ -382,6 +382,8 @@ def column_of(layout: ColumnLayout, source: TableSource) -> TableColumn:
         unit = source.units.label(source.quantity(name).dimension)
         return TableColumn(layout.label, unit, values.copy(), layout.decimals)
     column = _evaluated(layout, source)
+    if not source.alternatives:
+        return column
     others = [_evaluated(layout, other).values for other in source.alternatives]
     disturbed = [_evaluated(layout, other).values for other in source.disturbed]
     values = unique_cells(column.values, others, disturbed)  # type: ignore[arg-type]
@@ -469,7 +471,11 @@ def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:
     # the conversion may hand back the array itself, so it works on the copy
     values = source.units.from_si(in_si, quantity.dimension)
     # infinite is only what grows without bound towards a dead centre at which its row stands
-    values[~solved_rows(source) | np.isinf(values) & (source.status != Status.dead_centre)] = np.nan
+    infinite = np.isinf(values)
+    if (source.status != Status.ok).any():
+        values[~solved_rows(source) | infinite & (source.status != Status.dead_centre)] = np.nan
+    elif infinite.any():
+        values[infinite] = np.nan
     unit = source.units.label(quantity.dimension)
     return column_of_numbers(layout.label, unit, values, layout.decimals)
 

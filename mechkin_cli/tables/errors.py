@@ -20,7 +20,12 @@ from mechkin_cli.tables.columns import FloatArray, TableColumn, Words, words_of
 from mechkin_cli.tables.layout import counted
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.tape import DoubleDoubles, difference
-from mechkin_cli.tolerances import DOUBTFUL, NO_DOUBT, ZERO_BUT_FOR_ROUNDING
+from mechkin_cli.tolerances import (
+    DOUBTFUL,
+    NO_DOUBT,
+    ZERO_BUT_FOR_ROUNDING,
+    ZERO_WHERE_DOUBLES_ARE,
+)
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -160,7 +165,11 @@ def column_errors(
     error = np.where(np.isfinite(values) & np.isfinite(error), error, np.nan)
     known = np.isfinite(error)
     cells, exact = (np.abs(v[known]).max(initial=0.0) for v in (values, true.high))
-    zero = cells > 0.0 and exact <= ZERO_BUT_FOR_ROUNDING * cells
+    zero = (
+        exact <= ZERO_BUT_FOR_ROUNDING * cells
+        if cells > 0.0
+        else 0.0 < exact <= ZERO_WHERE_DOUBLES_ARE
+    )
     with np.errstate(invalid="ignore"):
         is_bound = known & ~(doubt <= np.maximum(DOUBTFUL * error, NO_DOUBT * cells))
         error = np.where(is_bound, error + doubt, error)

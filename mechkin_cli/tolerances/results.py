@@ -222,6 +222,10 @@ ZERO_BUT_FOR_ROUNDING: Final = 1e-8
 """A column whose numbers in double-double are all below this part of the largest of its cells is
 zero: what doubles leave there is 1e-16 of what cancelled, what double-doubles leave 1e-32."""
 
+ZERO_WHERE_DOUBLES_ARE: Final = 1e-24
+"""A column whose doubles are exactly zero in all rows is zero where its numbers in double-double
+(SI) are all below this: what cancelled was below 1e8, of which double-doubles leave 1e-32."""
+
 # --- the bound of a row (analysis.sweep.error_bound) ---------------------------------------------
 
 APART_BY_CLOSURE: Final = 2.0

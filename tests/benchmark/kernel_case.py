@@ -15,7 +15,7 @@ from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.outputs import OutputPlan, Readout, demand_of
 from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.plan.records import Demand
-from mechkin_cli.session.following import follow
+from mechkin_cli.session.following import Followed, follow
 from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, run
 
 if TYPE_CHECKING:
@@ -115,15 +115,15 @@ class KernelCase:
             predicted.append(np.concatenate([value[:1], ahead]))
         return self._states(predicted)
 
-    def sweep(self, planned: PlannedRun, lanes: int = 0) -> Callable[[], Batch]:
-        """A call that follows the branch from the first row along all rows and runs them."""
+    def following(self, planned: PlannedRun) -> Callable[[], Followed]:
+        """A call that follows the branch from the first row along all rows."""
         start = np.ascontiguousarray(self.states[:, 0])
+        return lambda: follow(planned.plan, self.inputs, start)
 
-        def timed() -> Batch:
-            followed = follow(planned.plan, self.inputs, start)
-            return planned(self.inputs, followed.guess, lanes=lanes)
-
-        return timed
+    def sweep(self, planned: PlannedRun, lanes: int = 0) -> Callable[[], Batch]:
+        """The same, and runs them."""
+        followed = self.following(planned)
+        return lambda: planned(self.inputs, followed().guess, lanes=lanes)
 
 
 @cache

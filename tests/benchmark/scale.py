@@ -1,11 +1,14 @@
 """Runs of any length: time and memory of sweeps of 10^2 to 10^8 rows as whole processes, beside
-polars and pyarrow writing the same numbers; prints the tables of docs/scale.md.
+polars and pyarrow writing the same numbers, and what scale_parts.py measures; prints the tables of
+docs/scale.md.
 
-    python -P tests/benchmark/scale.py [--most ROWS] [--json]
+    python -P tests/benchmark/scale.py [--most ROWS] [--up-to NUMBER] [PART...] [--json]
+    python -P tests/benchmark/scale.py --kernel [--most ROWS]
 
 Ten columns of RCSR: positions, rates, an effort and a reaction. Times are by the processor's
-clock, as the machine may be shared; slopes are of log time over log rows, between the two largest
-runs.
+clock, as the machine may be shared. Slopes are of log time over log of what grows: of the last
+step, and of the whole table. `--kernel`: what a run that keeps no rows takes in parts of its calls
+of the kernel alone, and responses of a pendulum with as many rows.
 """
 
 from __future__ import annotations
@@ -98,6 +101,77 @@ def measured(most: int) -> list[dict[str, float]]:
     return lines
 
 
+PENDULUM = """format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links: {{bob: {{mass: 1, center_of_mass: [0, -1], inertia: 0}}}}
+joints: {{O: {{type: R, links: [ground, bob], point: [0, 0]}}}}
+loads: [{{type: gravity, g: [0, -9.80665]}}]
+responses: {{swing: {{start: {{O.theta: 1}}, time: {{from: 0, to: 10, count: {rows}}}}}}}
+tables:
+  - {{name: t, run: swing, columns: [time, O.theta, O.theta_dot, row.energy_error]}}
+"""
+
+INSIDE = """
+import sys
+from time import process_time
+from mechkin_cli.session import Session
+from mechkin_cli.__main__ import main
+
+spent = [0.0]
+
+def timed(work):
+    def call(*args, **named):
+        start = process_time()
+        try:
+            return work(*args, **named)
+        finally:
+            spent[0] += process_time() - start
+    return call
+
+Session.run, Session.follow_rows = timed(Session.run), timed(Session.follow_rows)
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code
+print(spent[0], process_time())
+"""
+"""A command in a process of its own, and the seconds that it spends in calls of the kernel, and in
+all."""
+
+
+def inside(text: str, folder: Path) -> tuple[float, float]:
+    """Seconds of the kernel and of all in a run that keeps no rows."""
+    path = folder / "own.yaml"
+    path.write_text(text, encoding="utf-8")
+    words = ["analyze", str(path), "--summary-only", "--quiet", "--out", str(folder / "o")]
+    command = [sys.executable, "-P", "-c", INSIDE, *words]
+    found = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    kernel, whole = map(float, found.split())
+    return kernel, whole
+
+
+def beside_the_kernel(rows: int) -> str:
+    """What peaks alone take in parts of the kernel's calls; and responses, by their rows."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        start = min(inside(long_text(100), folder)[1] for _ in range(3))
+        kernel, whole = min(inside(long_text(rows), folder) for _ in range(3))
+        said = [
+            f"RCSR, {rows:,} rows, peaks alone: {whole:.2f} s, {start:.2f} of them to start; the "
+            f"kernel {kernel:.2f} s; behind the start {(whole - start) / kernel:.2f} times that"
+        ]
+        for count in (rows // 10, rows):
+            path = folder / "p.yaml"
+            path.write_text(PENDULUM.format(rows=count), encoding="utf-8")
+            program = [sys.executable, "-P", "-m", "mechkin_cli", "analyze", str(path)]
+            for way, options in WAYS.items():
+                out = ["--quiet", "--out", str(folder / "r")]
+                seconds, megabytes = cost([*program, *options, *out])
+                said.append(f"response, {count:,} rows, {way}: {seconds:.2f} s, {megabytes:.0f} MB")
+    return "\n".join(said)
+
+
 def page(lines: Sequence[dict[str, float]]) -> str:
     """The table, as docs/scale.md has it."""
     heads = ["rows"]
@@ -111,22 +185,62 @@ def page(lines: Sequence[dict[str, float]]) -> str:
             cells += [f"{line[way]:.2f}", f"{line[f'{way} MB']:.0f}"]
         cells += [f"{line['polars csv']:.2f}", f"{line['pyarrow parquet']:.2f}"]
         found.append(f"| {' | '.join(cells)} |")
-    if len(lines) > 1:
-        before, last = lines[-2:]
-        way = math.log(last["rows"] / before["rows"])
-        slopes = [f"{one} {math.log(last[one] / before[one]) / way:.2f}" for one in WAYS]
-        found += ["", f"Slopes of the last step: {', '.join(slopes)}."]
-    return "\n".join(found)
+    return "\n".join([*found, "", slopes(lines, "rows", list(WAYS))])
+
+
+def slopes(lines: Sequence[dict[str, float]], by: str, names: Sequence[str]) -> str:
+    """On log-log paper, from the line before to the last, and over all."""
+
+    def slope(one: str, first: dict[str, float]) -> str:
+        last = lines[-1]
+        if not first[one] or not last[one]:
+            return "-"
+        return f"{math.log(last[one] / first[one]) / math.log(last[by] / first[by]):.2f}"
+
+    if len(lines) < 2:
+        return ""
+    told = [f"{one} {slope(one, lines[-2])} ({slope(one, lines[0])})" for one in names]
+    return f"Slopes of the last step (of all): {', '.join(told)}."
+
+
+def part_page(lines: Sequence[dict[str, float]]) -> str:
+    """The table of a part of scale_parts.py: what grows, then seconds."""
+    by, *names = lines[0]
+    counted = [name for name in names if name == "unknowns"]
+    timed = [name for name in names if name not in counted]
+    heads = [by, *counted, *(f"{name}, s" for name in timed)]
+    found = [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
+    for line in lines:
+        cells = [f"{line[name]:,.0f}" for name in (by, *counted)]
+        found.append(f"| {' | '.join([*cells, *(f'{line[name]:.2g}' for name in timed)])} |")
+    return "\n".join([*found, "", slopes(lines, by, timed)])
 
 
 def main() -> None:
     """Measures and prints."""
+    sys.path[:0] = [str(HERE.parent), str(HERE.parents[1])]
+    from benchmark.scale_parts import PARTS
+
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--most", type=float, default=1e7, help="rows of the longest run")
+    parser.add_argument("--up-to", type=float, default=math.inf, help="of the other parts")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--kernel", action="store_true", help="peaks beside the kernel; responses")
+    parser.add_argument("parts", nargs="*", choices=[[], "rows", *PARTS], metavar="PART")
     options = parser.parse_args()
-    lines = measured(round(options.most))
-    print(json.dumps(lines) if options.json else page(lines))
+    if options.kernel:
+        print(beside_the_kernel(round(options.most)))
+        return
+    for name in options.parts or ("rows", *PARTS):
+        if name == "rows":
+            lines, shown = measured(round(options.most)), page
+        else:
+            part, most = PARTS[name]
+            lines, shown = [], part_page
+            for line in part(int(min(most, options.up_to))):
+                lines.append(line)
+                print(json.dumps(line), file=sys.stderr, flush=True)
+        print(json.dumps({name: lines}) if options.json else f"{name}\n\n{shown(lines)}\n")
 
 
 if __name__ == "__main__":

@@ -58,7 +58,9 @@ def table(specimen: Specimen, yardstick: Yardstick) -> ReportTable:
         for level, name in enumerate(LEVELS):
             calls["mechkin", name, lanes] = partial(runs[level], inputs, guesses, lanes=lanes)
             calls["yardstick", name, lanes] = other_case.call(lanes, level)
-        calls["mechkin", "sweep", lanes] = fine.sweep(PlannedRun(fine, specimen.levels[2]), lanes)
+        everything = PlannedRun(fine, specimen.levels[2])
+        calls["mechkin", "sweep", lanes] = fine.sweep(everything, lanes)
+        calls["mechkin", "following", lanes] = fine.following(everything)
     times = in_turns(calls)
     rows: list[dict[str, Cell]] = []
     for lanes in shared:
@@ -69,6 +71,8 @@ def table(specimen: Specimen, yardstick: Yardstick) -> ReportTable:
         mine, other = times["mechkin", "sweep", lanes], times["yardstick", LEVELS[2], lanes]
         name = f"{lanes} lanes, sweep of {SWEEP_ROWS} rows"
         rows.append(_row(name, mine, other, SWEEP_ROWS, BATCH, SWEEP_LIMIT))
+        mine = times["mechkin", "following", lanes]
+        rows.append(_row("of which following", mine, other, SWEEP_ROWS, BATCH))
     notes = (
         f"us per row, {BATCH} rows a call; each line of a width with all above it.",
         "other: the yardstick at the same width without contraction, two Newton steps,",

@@ -15,7 +15,7 @@ from mechkin_cli.plan.layout import Layout, home_state
 from mechkin_cli.plan.outputs import Readout
 from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.plan.records import Output, OutputCode, TrackEnd, hand_over_outputs
-from mechkin_cli.session.following import Followed, follow
+from mechkin_cli.session.following import Followed, follow, step_limits
 from mechkin_cli.session.inputs import (
     ORIENTATION,
     closing_slots,
@@ -231,3 +231,41 @@ def test_a_row_that_is_no_place_ends_the_way(platform: Platform, row: int, value
     followed = follow(platform.plan, path, platform.start)
     assert followed.end != TrackEnd.FINISHED
     assert followed.reached == row
+
+
+STEPS = (0.2, 0.1)
+"""Longest steps (rad) of a loop that wants longer ones: all nodes are as far apart."""
+
+
+def missed_by_guesses(longest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Places of rows of an RCHCH in parts of the longest step, and the largest miss of a guess."""
+    setup = prepared(mk.load(FILE_OF["rchch"]).problem)
+    plan = build_plan(setup.layout)
+    way = np.linspace(0.0, 2.0, 401)
+    rows = setup.inputs.values[:, setup.start.row][:, None] + way
+    followed = follow(plan, rows, setup.start.state, limits=step_limits(longest))
+    assert followed.end == TrackEnd.FINISHED
+    assert followed.steps == round(2.0 / longest)
+    closed = run(plan, RowInputs(rows, followed.guess))
+    assert closed.good.all()
+    return way / longest, np.abs(followed.guess - closed.states).max(axis=0)
+
+
+def test_rows_between_nodes_are_told_to_ninth_order() -> None:
+    """Two nodes give a polynomial of degree five; with the node before them it is one of eight."""
+    misses = []
+    for longest in STEPS:
+        place, miss = missed_by_guesses(longest)
+        misses.append((miss[place < 1.0].max(), miss[place > 1.0].max()))
+    first, later = np.log2(np.divide(*misses))
+    assert 5.5 < first < 7.5
+    assert 8.3 < later < 9.7
+
+
+def test_rows_on_nodes_are_closed() -> None:
+    """However many of them were closed at once."""
+    place, miss = missed_by_guesses(STEPS[0])
+    on_nodes = np.abs(place - np.rint(place)) < 1e-9
+    assert on_nodes.sum() == 11
+    assert miss[on_nodes].max() < 1e-14
+    assert miss[~on_nodes & (place > 1.0)].max() > 1e-11

@@ -10,7 +10,9 @@ import pytest
 import mechkin_cli as mk
 from mechkin_cli.tables.columns import column_texts
 from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.errors import ZERO as ZERO_BUT_FOR_ROUNDING, column_errors
 from mechkin_cli.tables.markup import latex_bytes, markdown_bytes
+from mechkin_cli.tape import DoubleDoubles
 
 # A crank in the plane square to (2, 1, 2): what is square to its plane is zero but for rounding.
 FILE = """\
@@ -81,3 +83,11 @@ def test_pages_and_summaries_show_it_too() -> None:
 )
 def test_texts(values: list[float], rounding: float, texts: list[str]) -> None:
     assert column_texts(np.array(values), rounding=rounding) == texts
+
+
+@pytest.mark.parametrize(("true", "why"), [(4.9e-32, ZERO_BUT_FOR_ROUNDING), (1e-9, ""), (0.0, "")])
+def test_zero_in_all_doubles_is_right_but_for_what_double_doubles_round(
+    true: float, why: str
+) -> None:
+    exact = DoubleDoubles(np.array([true, 0.0]), np.zeros(2))
+    assert column_errors("t", "a", "m/s^2", np.zeros(2), exact).why == why

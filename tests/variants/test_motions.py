@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.building import motion_as_built
 from mechkin_cli.variants.design import base_of
 
 ARM = """
@@ -89,3 +90,68 @@ def test_a_mechanism_that_does_not_move() -> None:
     result = mk.loads(WELDED).vary({"L": [0.5, 1.0]}, ["A.moment_about_origin", "A.force"])
     assert np.allclose(result["A.moment_about_origin"][:, 0, 2], [10.0, 20.0])
     assert np.allclose(result["A.force"][:, 0], [0.0, 20.0, -2.0])
+
+
+@pytest.mark.parametrize(
+    ("motion", "k", "message"),
+    [
+        (SWEPT.replace("to: 90, step: 30", "to: 40, step: k * 5 deg"), 0, "the step is zero"),
+        (SWEPT.replace("from: 0, to: 90, step: 30", "values: [0, 30 deg / k]"), 0, "division"),
+        (SWEPT.replace("rate: 1 rad/s", "rate: 1 rad/s / k"), 0, "division by zero"),
+        (
+            HARMONIC.replace("to: 90", "to: 90, start: 0.1, duration: k * 0.2 s"),
+            -1,
+            "positive time",
+        ),
+    ],
+)
+def test_a_motion_that_says_something_is_refused_as_in_a_fresh_file(
+    motion: str, k: float, message: str
+) -> None:
+    """The variant's motion alone is read again, and must not stand in spite of what it says."""
+    model = mk.loads(arm(motion), "arm")
+    with pytest.raises(mk.MechkinError, match=message) as fresh:
+        mk.loads(arm(motion), "arm", {"k": str(k)})
+    for _ in range(2):  # recorded by then
+        errors = model.vary({"k": [2.0, k]}, ["A.theta"]).errors
+        assert list(errors) == [1]
+        assert str(errors[1]) == str(fresh.value)
+    with pytest.raises(mk.MechkinError, match=message):
+        model.with_parameters({"k": k}).analyze(["A.theta"])
+
+
+SEQUENCE = TIMED.replace(
+    "LAW",
+    "sequence, from: 0, segments: [{law: constant-rate, for: 0.5, to: 0.5 rad}, "
+    "{law: constant-rate, for: 0.5, to: k * 0.5 rad}]",
+)
+
+
+@pytest.mark.parametrize(
+    ("motion", "silent", "says"),
+    [
+        (SWEPT.replace("to: 90, step: 30", "to: 40, step: k * 5 deg"), 2.0, 0.0),
+        (SWEPT.replace("rate: 1 rad/s", "rate: 1 rad/s / k"), 2.0, 0.0),
+        # a rate that jumps is warned of
+        (SEQUENCE, 2.0, 3.0),
+    ],
+)
+def test_a_motion_that_says_something_is_not_taken_by_itself(
+    motion: str, silent: float, says: float
+) -> None:
+    base = base_of(mk.loads(arm(motion), "arm").design)
+    built = base.design.built
+    found = motion_as_built(built, built.problem, base.given({"k": silent}))
+    assert found is not None
+    assert found.rows == built.problem.motion.rows
+    assert motion_as_built(built, built.problem, base.given({"k": says})) is None
+
+
+def test_a_variant_warns_as_its_fresh_file() -> None:
+    text = arm(SEQUENCE)
+    model = mk.loads(text, "arm")
+    for k in (2.0, 3.0, 2.0):
+        own = model.with_parameters({"k": k}).analyze(["A.theta"], tables=[]).diagnostics
+        fresh = mk.loads(text, "arm", {"k": str(k)}).analyze(["A.theta"], tables=[]).diagnostics
+        assert list(map(str, own)) == list(map(str, fresh))
+        assert [d.code for d in own] == ["rate-jump"] * (k == 3.0)

@@ -53,7 +53,8 @@ double* table(const WrittenTable& a, long columns, long rows, const char* name) 
 // Single positions run on the narrowest unit, whose latency is the least.
 const KernelUnit& narrow_unit() { return *kernel_unit(2); }
 
-nb::object copied(const Vector& values) {
+template <class List>
+nb::object copied(const List& values) {
   double* data = new double[values.empty() ? 1 : values.size()];
   std::copy(values.begin(), values.end(), data);
   nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
@@ -217,7 +218,7 @@ std::optional<Node> close_at(OwnedStepper& s, double sigma, const Vector& guess)
 void need_node(const OwnedStepper& s, const Node& node) {
   const Stepper& stepper = *s.stepper;
   const Plan& p = stepper.plan();
-  const auto has = [](const Vector& values, long count) { return (long)values.size() == count; };
+  const auto has = [](const auto& values, long count) { return (long)values.size() == count; };
   need(has(node.state, p.states) && has(node.state_first, p.states) && has(node.state_second, p.states) &&
            has(node.first, p.columns) && has(node.second, p.columns) && has(node.side, p.blocks) &&
            has(node.pivot, p.blocks) && has(node.jacobian, stepper.jacobian_entries()) &&
@@ -317,7 +318,7 @@ nb::list tree_turn_table(const FrozenPlan& store) {
   return list;
 }
 
-template <std::vector<double> Node::*Member>
+template <auto Member>
 nb::object member(const Node& node) {
   return copied(node.*Member);
 }

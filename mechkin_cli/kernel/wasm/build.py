@@ -44,10 +44,10 @@ integrator/march.cpp integrator/march_rows.cpp response/charted_motion.cpp""".sp
 SMALL = """plan/plan_builder.cpp plan/plan_blocks.cpp plan/frozen_plan.cpp plan/same_layout.cpp
 plan/output_list.cpp plan/program_store.cpp plan/function_store.cpp tape/tape_store.cpp
 rows/assembly_size.cpp rows/run.cpp rows/threads.cpp rows/units.cpp stepping/arc.cpp
-stepping/branch_point.cpp stepping/passage.cpp stepping/stretch.cpp stepping/judge.cpp
-stepping/tracker.cpp stepping/polyline.cpp stepping/orbit.cpp stepping/row_pieces.cpp
-stepping/course.cpp stepping/dimension_path.cpp stepping/variants.cpp text/number_text.cpp
-text/shortest.cpp
+stepping/branch_point.cpp stepping/passage.cpp stepping/stretch.cpp stepping/ahead.cpp
+stepping/judge.cpp stepping/tracker.cpp stepping/polyline.cpp stepping/orbit.cpp
+stepping/row_pieces.cpp stepping/course.cpp stepping/dimension_path.cpp stepping/variants.cpp
+text/number_text.cpp text/shortest.cpp
 integrator/radau.cpp integrator/radau_newton.cpp integrator/crossings.cpp integrator/kinks.cpp
 integrator/march_start.cpp integrator/sides.cpp integrator/crossing_search.cpp
 response/driven_laws.cpp response/charted_friction.cpp response/slip_trial.cpp response/response.cpp

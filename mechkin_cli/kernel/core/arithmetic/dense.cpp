@@ -46,7 +46,8 @@ void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& b
       if (!N && a[k * n + i] == 0.0) continue;
       for (int j = 0; j < columns; ++j) x[k * columns + j] -= a[k * n + i] * x[i * columns + j];
     }
-    for (int j = 0; j < columns; ++j) x[k * columns + j] /= pivot[k];
+    const double inverse = 1.0 / pivot[k];
+    for (int j = 0; j < columns; ++j) x[k * columns + j] *= inverse;
   }
 }
 
@@ -121,7 +122,8 @@ void spectral_bounds(double* power, double* room, int size, Use&& use) {
     double root = norm;
     for (int i = 0; i < k; ++i) root = std::sqrt(root);
     if (use(scale * root) || k == 5 || norm == 0.0) return;
-    for (int e = 0; e < entries; ++e) power[e] /= norm;
+    const double inverse = 1.0 / norm;
+    for (int e = 0; e < entries; ++e) power[e] *= inverse;
     scale *= root;
     square_into<N>(power, size, room);
     std::swap(power, room);

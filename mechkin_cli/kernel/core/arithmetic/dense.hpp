@@ -103,7 +103,8 @@ void subtract_identity(Matrix* a);
 double determinant(Matrix a);
 
 // Scalar product.
-inline double product(const std::vector<double>& a, const std::vector<double>& b) {
+template <class List>
+double product(const List& a, const List& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;

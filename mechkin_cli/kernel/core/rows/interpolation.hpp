@@ -26,10 +26,15 @@ void interpolate(const Hermite& curve) {
     const Pack second0 = Pack(0.5) * t2 * (one - t * (Pack(3.0) - t * (Pack(3.0) - t)));
     const Pack value1 = one - value0, first1 = -t3 * (Pack(4.0) - t * (Pack(7.0) - Pack(3.0) * t));
     const Pack second1 = Pack(0.5) * t3 * (one - t * (Pack(2.0) - t));
+    const Pack left = one - t, both = t3 * (left * left * left), u = t - Pack(curve.third);
     for (int k = 0; k < curve.columns; ++k) {
       const double* const at = curve.ends + 6 * k;
       Pack found = value0 * Pack(at[0]) + value1 * Pack(at[3]) + step * (first0 * Pack(at[1]) + first1 * Pack(at[4])) +
                          square * (second0 * Pack(at[2]) + second1 * Pack(at[5]));
+      if (curve.rest) {
+        const double* const r = curve.rest + 3 * k;
+        found += both * (Pack(r[0]) + u * (Pack(r[1]) + u * Pack(r[2])));
+      }
       if (curve.whole[k]) {
         const Pack whole = nearest_integer(found / Pack(FULL_TURN));
         found -= Pack(FULL_TURN) * whole;

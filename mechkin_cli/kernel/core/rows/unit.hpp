@@ -26,6 +26,9 @@ struct Hermite {
   double* const* out;   // columns: rows each
   double* const* whole;  // columns: null, or rows of whole turns, in whose rows `out` is within half a turn
   const double* counted;  // columns: turns that all of these have besides
+  const double* rest;   // null, or columns x 3: numbers of t^3 (1 - t)^3 (r0 + u r1 + u^2 r2), t the part of the step and
+                        // u = t - third, by which a third place is met as well
+  double third;
 };
 
 // A step of a block with a band from one place to another by way of a third half way, their Jacobians full and row by row.

@@ -100,7 +100,7 @@ bool Arc::look(const double* guess, bool complete, const std::vector<double>& ra
 Matrix Arc::own_jacobian(const Node& node) {
   int blocks = 0;
   for (char own : own_) blocks += own;
-  if (blocks == 1) return block_matrix(node.jacobian, first_);
+  if (blocks == 1) return block_matrix(node.jacobian.data(), first_);
   Matrix j(rows_, size_);
   path_.at(node.sigma, &point_);
   std::vector<unsigned char> use(plan_.blocks);
@@ -377,9 +377,11 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
     double danger = own_danger;
     const bool same = own_[k] ? own_same
                               : has_band(k)
-                                  ? is_regular_band(k, a.jacobian, half.jacobian, b->jacobian, &danger, &b->singular[k])
-                                  : is_regular_segment(Factored(block_matrix(a.jacobian, k)), block_matrix(half.jacobian, k),
-                                                   Factored(block_matrix(b->jacobian, k)), limits_.radius, &danger,
+                                  ? is_regular_band(k, a.jacobian.data(), half.jacobian.data(), b->jacobian.data(), &danger,
+                                                    &b->singular[k])
+                                  : is_regular_segment(Factored(block_matrix(a.jacobian.data(), k)),
+                                                       block_matrix(half.jacobian.data(), k),
+                                                       Factored(block_matrix(b->jacobian.data(), k)), limits_.radius, &danger,
                                                    &b->singular[k]);
     b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);
     if (!same || !(b->singular[k] >= limits_.pivot)) {

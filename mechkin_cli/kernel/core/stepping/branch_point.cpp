@@ -173,7 +173,9 @@ Node node_at(Arc& arc, const BranchPointAhead& point, double before) {
     }
   }
   there = near;
-  arc.predict(near, before, &there.state);
+  std::vector<double> state;
+  arc.predict(near, before, &state);
+  there.state = state;
   there.place += before, there.sigma = point.sigma;
   there.inputs = arc.inputs_at(point.sigma);
   return there;

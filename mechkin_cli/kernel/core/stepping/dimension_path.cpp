@@ -71,7 +71,7 @@ constexpr int COMING_DOWN = 4;
 constexpr double NARROW = 1e-2;
 
 // Closes a place next to a fold from another: on a parabola Newton's method stays on the side where it begins.
-bool newton_beside_fold(Stepper& stepper, double sigma, const std::vector<double>& from, Node* to) {
+bool newton_beside_fold(Stepper& stepper, double sigma, const Node::Few& from, Node* to) {
   std::vector<double> guess = from;
   for (int k = 0; !stepper.rest(sigma, guess.data(), to); ++k, guess = to->state)
     if (k == COMING_DOWN) return false;
@@ -80,7 +80,7 @@ bool newton_beside_fold(Stepper& stepper, double sigma, const std::vector<double
 
 // Whether the way to a place `rest` nearer to the fold lies on the parabola of a node: at a distance d in sigma from the
 // fold x' = h / 2d and x'' = -h / 4d^2, so h = x'^2 / x'' and d = x' / 2x''. `sense`: that of sigma towards the fold.
-bool is_on_parabola(const Node& node, double sense, double rest, const std::vector<double>& other) {
+bool is_on_parabola(const Node& node, double sense, double rest, const Node::Few& other) {
   const double first = product(node.state_first, node.state_first);
   const double second = std::sqrt(product(node.state_second, node.state_second));
   const double way = first / second;
@@ -94,7 +94,7 @@ bool is_on_parabola(const Node& node, double sense, double rest, const std::vect
   return square <= 4.0 * way * way;
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
+double distance(const Node::Few& a, const Node::Few& b) {
   double square = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
   return std::sqrt(square);
@@ -162,11 +162,11 @@ bool is_narrow(const Plan& plan, const Node& node) {
 bool go_up(Stepper& stepper, const Node& node, Node* next) {
   // a ladder of places, each four times as far from the fold as the one before it, from which Newton's method comes to it
   const double whole = 1.0 - node.sigma;
-  std::vector<std::vector<double>> places;
+  std::vector<Node::Few> places;
   std::vector<double> steps;
   for (double h = whole; h >= stepper.limits().least_step; h *= 0.0625) steps.push_back(h);
   Node there;
-  const std::vector<double>* from = &node.state;
+  const Node::Few* from = &node.state;
   places.resize(steps.size());
   for (std::size_t k = steps.size(); k-- > 0;) {
     if (!newton_beside_fold(stepper, k ? node.sigma + steps[k] : 1.0, *from, &there)) continue;

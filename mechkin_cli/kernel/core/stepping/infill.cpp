@@ -8,11 +8,53 @@
 
 namespace {
 
+// What the quintic polynomial through the nodes' values misses at the node before them, where three of these tell it
+// well; see Hermite.
+class ThirdNode {
+ public:
+  // `place`: in parts of the step.
+  explicit ThirdNode(double place) : place_(place) {
+    const double t = place, t2 = t * t, t3 = t2 * t, left = 1.0 - t;
+    value_[0] = 1.0 - t3 * (10.0 - t * (15.0 - 6.0 * t)), value_[3] = 1.0 - value_[0];
+    value_[1] = t - t3 * (6.0 - t * (8.0 - 3.0 * t)), value_[4] = -t3 * (4.0 - t * (7.0 - 3.0 * t));
+    value_[2] = 0.5 * t2 * (1.0 - t * (3.0 - t * (3.0 - t))), value_[5] = 0.5 * t3 * (1.0 - t * (2.0 - t));
+    first_[3] = 30.0 * t2 * left * left, first_[0] = -first_[3];
+    first_[1] = 1.0 - t2 * (18.0 - t * (32.0 - 15.0 * t)), first_[4] = -t2 * (12.0 - t * (28.0 - 15.0 * t));
+    first_[2] = t * (1.0 - t * (4.5 - t * (6.0 - 2.5 * t))), first_[5] = t2 * (1.5 - t * (4.0 - 2.5 * t));
+    second_[3] = 60.0 * t * left * (1.0 - 2.0 * t), second_[0] = -second_[3];
+    second_[1] = -t * (36.0 - t * (96.0 - 60.0 * t)), second_[4] = -t * (24.0 - t * (84.0 - 60.0 * t));
+    second_[2] = 1.0 - t * (9.0 - t * (18.0 - 10.0 * t)), second_[5] = t * (3.0 - t * (12.0 - 10.0 * t));
+    // t^3 (1 - t)^3 and its derivatives
+    both_ = t3 * left * left * left, both_first_ = 3.0 * t2 * left * left * (1.0 - 2.0 * t);
+    both_second_ = 6.0 * t * left * (1.0 - 5.0 * t + 5.0 * t2);
+    inverse_ = 1.0 / both_;
+  }
+  double place() const { return place_; }
+  // `ends`: as in Hermite; value, first and second derivative at the third node; all by the step as unit.
+  void find(const double* ends, double h, double value, double first, double second, double* rest) const {
+    const double unit[6] = {ends[0], h * ends[1], h * h * ends[2], ends[3], h * ends[4], h * h * ends[5]};
+    value -= sum(value_, unit), first = h * first - sum(first_, unit), second = h * h * second - sum(second_, unit);
+    rest[0] = value * inverse_, rest[1] = (first - both_first_ * rest[0]) * inverse_;
+    rest[2] = 0.5 * (second - both_second_ * rest[0] - 2.0 * both_first_ * rest[1]) * inverse_;
+  }
+
+ private:
+  static double sum(const double* weight, const double* unit) {
+    double found = 0.0;
+    for (int k = 0; k < 6; ++k) found += weight[k] * unit[k];
+    return found;
+  }
+
+  double place_, value_[6], first_[6], second_[6], both_, both_first_, both_second_, inverse_;
+};
+// Where that node must stand, in parts of the step before it: nearer ones tell rounding, farther ones another curve.
+constexpr double NEAREST_THIRD = 0.4, FARTHEST_THIRD = 2.5;
+
 // Columns of the rows between two nodes, which the widest unit interpolates some at a time.
 class RowsBetween {
  public:
   RowsBetween(const Node& a, const Node& b, const double* place, long rows)
-      : curve_{a.place, b.place - a.place, rows, place, 0, ends_, out_, whole_, counted_} {}
+      : curve_{a.place, b.place - a.place, rows, place, 0, ends_, out_, whole_, counted_, nullptr, 0.0} {}
   RowsBetween(const RowsBetween&) = delete;
   // A value with its first and second derivative at both nodes; `out`: rows. `whole`, `counted`: as in Hermite.
   void add(double value0, double first0, double second0, double value1, double first1, double second1, double* out,
@@ -23,30 +65,36 @@ class RowsBetween {
     ends[0] = value0, ends[1] = first0, ends[2] = second0, ends[3] = value1, ends[4] = first1, ends[5] = second1;
     out_[k] = out, whole_[k] = whole, counted_[k] = counted;
   }
+  // The last one added meets the node before these, too: each of a round does, or none.
+  void add(const ThirdNode& third, double value, double first, double second) {
+    const int k = curve_.columns - 1;
+    third.find(ends_ + 6 * k, curve_.step, value, first, second, rest_ + 3 * k);
+    curve_.rest = rest_, curve_.third = third.place();
+  }
   // What was added since the last time.
   void interpolate() {
     if (curve_.columns) kernel_unit()->interpolate(curve_);
-    curve_.columns = 0;
+    curve_.columns = 0, curve_.rest = nullptr;
   }
 
  private:
   static constexpr int MOST_COLUMNS = 16;
 
-  double ends_[6 * MOST_COLUMNS], counted_[MOST_COLUMNS];
+  double ends_[6 * MOST_COLUMNS], counted_[MOST_COLUMNS], rest_[3 * MOST_COLUMNS];
   double *out_[MOST_COLUMNS], *whole_[MOST_COLUMNS];
   Hermite curve_;
 };
 
 // The same orientation by the opposite quaternion.
 void negate(Node* node, int slot) {
-  for (std::vector<double>* values : {&node->turn, &node->turn_first, &node->turn_second})
+  for (Node::Few* values : {&node->turn, &node->turn_first, &node->turn_second})
     for (int i = slot; i < slot + 4; ++i) (*values)[i] = -(*values)[i];
 }
 
 }  // namespace
 
 void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
-            const RowGuesses& out, const Chosen* chosen) {
+            const RowGuesses& out, const Chosen* chosen, const Node* before) {
   const int states = stepper.plan().states;
   double distance = b.place - a.place;
   for (int s = 0; s < states; ++s) distance = greater(distance, std::fabs(b.state[s] - a.state[s]));
@@ -55,13 +103,21 @@ void infill(const Stepper& stepper, const Node& a, const Node& b, const double* 
   std::fill(out.limit + begin, out.limit + end, limit);
   if (begin == end) return;
   RowsBetween rows(a, b, place, end - begin);
+  const double way = before ? (a.place - before->place) / (b.place - a.place) : 0.0;
+  const bool is_told = way >= NEAREST_THIRD && way <= FARTHEST_THIRD;
+  const ThirdNode third(is_told ? -way : -1.0);
   for (int s = 0; s < states; ++s) {
     if (chosen && !chosen->state[s]) continue;
     const int slot = out.turn ? stepper.turn_of_state()[s] : -1;
     rows.add(a.state[s], a.state_first[s], a.state_second[s], b.state[s], b.state_first[s], b.state_second[s],
              out.guess + s * out.rows + begin, slot < 0 ? nullptr : out.turn + slot * out.rows + begin,
              slot < 0 ? 0.0 : a.turn[slot]);
+    if (!is_told) continue;
+    // angles that were reduced in between
+    const double turned = slot < 0 ? 0.0 : FULL_TURN * (before->turn[slot] - a.turn[slot]);
+    rows.add(third, before->state[s] + turned, before->state_first[s], before->state_second[s]);
   }
+  rows.interpolate();
   for (const ClosingTurn& t : stepper.turns())
     for (int s = t.slot; out.turn && s < t.slot + t.width; ++s)
       if (!chosen || chosen->slot[s])

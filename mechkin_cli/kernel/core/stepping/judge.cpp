@@ -26,18 +26,18 @@ bool is_regular_segment(const Factored& a, const Matrix& middle, const Factored&
   return from.change_within(middle, limit) && to.change_within(middle, limit);
 }
 
-Matrix Stepper::block_matrix(const std::vector<double>& jacobian, int block) const {
+Matrix Stepper::block_matrix(const double* jacobian, int block) const {
   const long at = plan_.block[block].full_at;
   Matrix matrix(plan_.block[block].rows, plan_.block[block].size);
-  std::copy_n(jacobian.begin() + at, matrix.a.size(), matrix.a.begin());
+  std::copy_n(jacobian + at, matrix.a.size(), matrix.a.begin());
   return matrix;
 }
 
-bool Stepper::is_regular_band(int block, const std::vector<double>& from, const std::vector<double>& middle,
-                              const std::vector<double>& to, double* danger, double* least) {
+bool Stepper::is_regular_band(int block, const double* from, const double* middle, const double* to, double* danger,
+                              double* least) {
   if (band_room_.empty()) band_room_.resize(unit_.band_room(plan_));
   const long at = plan_.block[block].full_at;
-  BandStep step = {from.data() + at, middle.data() + at, to.data() + at, limits_.radius, false, 0.0, 0.0};
+  BandStep step = {from + at, middle + at, to + at, limits_.radius, false, 0.0, 0.0};
   unit_.judge_band_step(plan_, block, &step, band_room_.data());
   *danger = step.danger, *least = std::fmin(*least, step.least);
   return step.is_regular;
@@ -54,12 +54,12 @@ void Stepper::middle(const Node& a, const Node& b, std::vector<double>* state) c
 
 const std::vector<Factored>& Stepper::factors(const Node& node) const {
   for (int k = (int)node.factored.size(); k < plan_.blocks; ++k)
-    node.factored.emplace_back(has_band(k) ? Matrix() : block_matrix(node.jacobian, k));
+    node.factored.emplace_back(has_band(k) ? Matrix() : block_matrix(node.jacobian.data(), k));
   return node.factored;
 }
 
 bool Stepper::same_side(const Node& a, Node* b) {
-  const double h = b->place - a.place, half = a.sigma + 0.5 * (b->sigma - a.sigma);
+  const double half = a.sigma + 0.5 * (b->sigma - a.sigma);
   middle(a, *b, &guess_);
   const Plan& plan = path_.plan(half);
   path_.at(half, &point_);
@@ -71,13 +71,18 @@ bool Stepper::same_side(const Node& a, Node* b) {
   r.residual = &residual, r.correction = &correction, r.flags = &flags;
   r.jacobian = half_way_.data(), r.demand = DEMAND_JACOBIAN;
   unit_.run_row(plan, r, memory_.data());
+  return same_side(a, b, half_way_.data());
+}
+
+bool Stepper::same_side(const Node& a, Node* b, const double* half_way) {
+  const double h = b->place - a.place;
   const std::vector<Factored>&from = factors(a), &to = factors(*b);
   bool same = true;
   b->least = HUGE_VAL;
   for (int k = 0; k < plan_.blocks; ++k) {
     double danger = 0.0;
-    same = (has_band(k) ? is_regular_band(k, a.jacobian, half_way_, b->jacobian, &danger, &b->singular[k])
-                        : is_regular_segment(from[k], block_matrix(half_way_, k), to[k], limits_.radius, &danger,
+    same = (has_band(k) ? is_regular_band(k, a.jacobian.data(), half_way, b->jacobian.data(), &danger, &b->singular[k])
+                        : is_regular_segment(from[k], block_matrix(half_way, k), to[k], limits_.radius, &danger,
                                              &b->singular[k])) && same;
     b->danger[k] = danger / std::fabs(h), b->least = lesser(b->least, b->singular[k]);
   }
@@ -114,10 +119,36 @@ bool Stepper::is_told(const Node& node) {
   return true;
 }
 
-bool Stepper::judge(const Node& a, Node* b) {
+bool Stepper::judge(const Node& a, Node* b) { return judge_by(a, b, nullptr); }
+
+bool Stepper::judge_by(const Node& a, Node* b, const double* half_way) {
   const double length = std::fabs(b->place - a.place) * std::sqrt(tangent_product(a, a));
   if (!(b->correction <= limits_.jump * length)) return false;
   for (double p : b->pivot)
     if (!(p >= limits_.pivot)) return false;
-  return !turned_too_far(a, *b) && looks_back(a, *b, limits_.jump * length) && same_side(a, b) && is_told(*b);
+  return !turned_too_far(a, *b) && looks_back(a, *b, limits_.jump * length) &&
+         (half_way ? same_side(a, b, half_way) : same_side(a, b)) && is_told(*b);
+}
+
+// What the prediction of a step from a to b would have had to be corrected by.
+double Stepper::missed(const Node& a, const Node& b) {
+  predict(a, b.place - a.place, &ahead_);
+  double most = 0.0;
+  for (int k = 0; k < plan_.links; ++k) {
+    const TreeJoint& j = plan_.joints[k];
+    const TreeType& type = unit_.tree_types[j.type];
+    // a quaternion's numbers change by half the angle
+    const double part = type.states == type.freedoms ? 1.0 : 2.0;
+    for (int s = j.state; s < j.state + type.states; ++s) {
+      const double miss = part * std::fabs(b.state[s] - ahead_[s]);
+      if (!(miss <= most)) most = miss;  // what is no number wins
+    }
+  }
+  return most;
+}
+
+bool Stepper::judge_ahead(const Node& a, NodesAhead* ahead) {
+  Node* const b = ahead->node[ahead->next];
+  b->correction = missed(a, *b);
+  return judge_by(a, b, ahead->half_way.data() + ahead->next * entries_);
 }

@@ -39,7 +39,7 @@ class Orbit {
   // Of an input's angle within half a turn and its whole turns.
   Place place(double angle, double whole) const;
   int leading() const { return leading_; }
-  const std::vector<double>& inputs() const { return start_.inputs; }
+  const Node::Few& inputs() const { return start_.inputs; }
 
   // Fills in rows [begin, end) of the guesses that lie at `places`, as far as their blocks repeat themselves.
   void fill(const Stepper& stepper, const std::vector<Place>& places, long begin, const RowGuesses& out) const;

@@ -90,9 +90,8 @@ void interpolate_all(const Node& a, const Node& b, double t, Node* node) {
   const double value1 = t3 * (10 - t * (15 - 6 * t)), first0 = t - t3 * (6 - t * (8 - 3 * t));
   const double first1 = -t3 * (4 - t * (7 - 3 * t)), second0 = 0.5 * t2 * (1 - t * (3 - t * (3 - t)));
   const double second1 = 0.5 * t3 * (1 - t * (2 - t));
-  const auto between = [&](const std::vector<double>& v0, const std::vector<double>& v1, const std::vector<double>& f0,
-                           const std::vector<double>& f1, const std::vector<double>& s0, const std::vector<double>& s1,
-                           std::vector<double>* out) {
+  const auto between = [&](const Node::Few& v0, const Node::Few& v1, const Node::Few& f0, const Node::Few& f1,
+                           const Node::Few& s0, const Node::Few& s1, Node::Few* out) {
     out->resize(v0.size());
     for (std::size_t i = 0; i < v0.size(); ++i)
       (*out)[i] = v0[i] + value1 * (v1[i] - v0[i]) + h * (first0 * f0[i] + first1 * f1[i]) +

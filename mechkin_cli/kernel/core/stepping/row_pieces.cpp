@@ -10,9 +10,13 @@ constexpr double ROUNDING = 0x1p-50;  // some units in the last place
 RowPieces::RowPieces(const InputRows& rows, const StepLimits& limits, const Course* course)
     : rows_(rows), limits_(limits), course_(course), scale_(rows.inputs, 0.0) {
   for (int i = 0; i < rows.inputs; ++i) {
-    double size = 0.0;
-    rows.each(i, 0, rows.rows, [&size](long, double x) { return size = greater(size, std::fabs(x)), true; });
-    scale_[i] = size;
+    double size[4] = {};  // one after the other they would wait for each other
+    rows.each(i, 0, rows.rows, [&size](long row, double x) {
+      double& most = size[row % 4];
+      most = std::fabs(x) > most ? std::fabs(x) : most;
+      return true;
+    });
+    scale_[i] = greater(greater(size[0], size[1]), greater(size[2], size[3]));
   }
 }
 

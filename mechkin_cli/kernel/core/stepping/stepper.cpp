@@ -66,13 +66,22 @@ bool Stepper::close(double sigma, const double* guess, double apart, Node* node)
   if (path_.varies()) {
     if (!differentiate_by_plan(node)) return false;
     columns_of_states(node);
-  } else {
-    differentiate_states(node);
-    differentiate_turns(node);
+    return has_derivatives(*node);
   }
-  for (double d : node->first) if (!std::isfinite(d)) return false;
-  for (double d : node->second) if (!std::isfinite(d)) return false;
+  return finish(node);
+}
+
+bool Stepper::has_derivatives(const Node& node) {
+  for (double d : node.first) if (!std::isfinite(d)) return false;
+  for (double d : node.second) if (!std::isfinite(d)) return false;
   return true;
+}
+
+// A node that the kernel closed, of a path along which the plan does not change.
+bool Stepper::finish(Node* node) const {
+  differentiate_states(node);
+  differentiate_turns(node);
+  return has_derivatives(*node);
 }
 
 void Stepper::size_node(Node* node) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arithmetic/dense.hpp"
+#include "arithmetic/numbers.hpp"
 #include "rows/unit.hpp"
 
 struct StepLimits {
@@ -70,6 +71,7 @@ class Line : public Path {
 };
 
 struct Node {
+  using Few = Numbers<8>;  // of most loops without memory of their own
   double sigma;
   double place;                                   // the parameter that derivatives are by: sigma, or an arclength
   double rate, bend;                              // sigma's derivatives by it: 1 and 0 where it is sigma
@@ -77,18 +79,18 @@ struct Node {
   double apart = 0.0;                             // distance of the places from which derivatives by the plan are read
   double least = __builtin_inf();                 // at most the blocks' least singular value; infinite where not looked at
   double own = 0.0, own_second = 0.0;             // sigma's part in the tangent besides the inputs', and its derivative
-  std::vector<double> inputs;
-  std::vector<double> state, first, second;       // states, columns, columns
-  std::vector<double> state_first, state_second;  // derivatives of the raw states
-  std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
-  std::vector<double> singular;                   // blocks: at most the least singular value; infinite where not looked at
-  std::vector<double> jacobian;                   // blocks, one after the other, rows x size
+  Few inputs;
+  Few state, first, second;                            // states, columns, columns
+  Few state_first, state_second;                  // derivatives of the raw states
+  Few side, pivot;                                // blocks: sign of a square block's determinant; least pivot
+  Few singular;                                   // blocks: at most the least singular value; infinite where not looked at
+  Numbers<36> jacobian;                           // blocks, one after the other, rows x size
   mutable std::vector<Factored> factored;         // blocks: the same with factors, from when they are first asked for
   Matrix extended;                                // by arclength: [J g] of its own equations
-  std::vector<double> danger;                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
+  Few danger;                                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
                                                   // about 1 / the distance to a singular place
   // of closing joints, see ClosingTurn, as the kernel has them; then whole turns of the tree's angles, see TreeTurn
-  std::vector<double> turn, turn_first, turn_second;
+  Few turn, turn_first, turn_second;
 };
 
 // An unknown angle of the tree that may turn for ever: its state is kept within half a turn, and `slot` of a node's
@@ -99,6 +101,23 @@ struct TreeTurn {
 constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
 // Whether all are integers that doubles count by one.
 bool are_whole_turns(const double* numbers, std::size_t count);
+
+// Nodes that were closed before it is known whether steps lead there, one after the other from a node on; the judge's
+// Jacobians half way to each from the one before.
+class NodesAhead {
+ public:
+  static constexpr int MOST = 4;  // extrapolation tells no more
+  Node* node[MOST] = {nodes_, nodes_ + 1, nodes_ + 2, nodes_ + 3};  // whose places others may take
+  std::vector<double> half_way;                                     // Jacobian after Jacobian
+  int next = 0, count = 0;                                          // those that are left
+  NodesAhead() = default;
+  NodesAhead(const NodesAhead&) = delete;
+  bool any() const { return next < count; }
+  void clear() { next = count = 0; }
+
+ private:
+  Node nodes_[MOST];
+};
 
 class Stepper {
  public:
@@ -129,6 +148,11 @@ class Stepper {
   // on a given place.
   bool step(const Node& a, double h, double sigma, Node* b);
   bool step(const Node& a, double h, Node* b) { return step(a, h, a.sigma + h, b); }
+  // Closes nodes at `count` places sigma beyond a, all at once, from the curve through `before` and a; of a path along
+  // which the plan does not change. Keeps those up to the first that does not close.
+  void close_ahead(const Node& before, const Node& a, const double* sigma, int count, NodesAhead* ahead);
+  // Judges the next of the nodes ahead, which a has become the neighbour of, as `step` does.
+  bool judge_ahead(const Node& a, NodesAhead* ahead);
   // The step that keeps prediction, turn of the tangent and change of the Jacobians within what is wanted.
   double wanted_step(const Node& node) const;
   // Closes the place half way between two nodes, near where their derivatives say.
@@ -156,11 +180,10 @@ class Stepper {
   // The states half way between two nodes, by quintic Hermite interpolation.
   void middle(const Node& a, const Node& b, std::vector<double>* state) const;
   // A block's matrix among those of a node.
-  Matrix block_matrix(const std::vector<double>& jacobian, int block) const;
+  Matrix block_matrix(const double* jacobian, int block) const;
   bool has_band(int block) const { return plan_.block[block].band_entries > 0; }
   // As is_regular_segment, of a block with a band.
-  bool is_regular_band(int block, const std::vector<double>& from, const std::vector<double>& middle,
-                       const std::vector<double>& to, double* danger, double* least);
+  bool is_regular_band(int block, const double* from, const double* middle, const double* to, double* danger, double* least);
   bool turned_too_far(const Node& a, const Node& b) const;
   bool looks_back(const Node& a, const Node& b, double tolerance);
   void size_node(Node* node) const;
@@ -183,7 +206,14 @@ class Stepper {
   bool close(double sigma, const double* guess, double apart, Node* node);
   double apart_for(double h) const;
   bool solve(double sigma, const double* guess, bool moving, Node* node);
+  static bool has_derivatives(const Node& node);
+  bool finish(Node* node) const;
   bool same_side(const Node& a, Node* b);
+  bool judge_by(const Node& a, Node* b, const double* half_way);
+  bool same_side(const Node& a, Node* b, const double* half_way);
+  double missed(const Node& a, const Node& b);
+  void extrapolate(const Node& before, const Node& a, double place, double* guess, long stride) const;
+  void run_ahead(const Request& request);
   const std::vector<Factored>& factors(const Node& node) const;
   bool is_told(const Node& node);
   bool differentiate_by_plan(Node* node);
@@ -198,6 +228,10 @@ class Stepper {
   // room for the states that are guessed, for those that a node looks back at, and for the Jacobians half way
   std::vector<double> guess_, ahead_, back_, half_way_;
   std::vector<char> band_room_;  // from when it is first asked for
+  // of what runs nodes ahead: a workspace of its width, and the arrays of its rows
+  const KernelUnit* wide_ = nullptr;
+  std::vector<char> wide_memory_;
+  std::vector<double> rows_ahead_;
 };
 
 // Whether the segments from one matrix to another, by way of a third half way, hold no singular one: the least of the

@@ -23,6 +23,15 @@ constexpr double KINK_MISS = 1e-4;
 // Halvings down to it, and steps between them, are fewer.
 constexpr int KINK_TRIES = 200;
 
+// The first of the steps that are closed ahead, in parts of the step behind: extrapolation tells no longer ones. Those
+// after it grow as steps do that have no dead centre near.
+constexpr double AHEAD_FIRST = 2.0;
+constexpr double AHEAD_GROWTH = 1.15;
+// What such a step may be, in parts of the one that is wanted once the node before it is known: not so long that it would
+// be refused, which is a quarter more than wanted; not so short that there are many more steps.
+constexpr double AHEAD_LONGER = 1.2;
+constexpr double AHEAD_SHORTER = 0.6;
+
 // Whether functions of a plan choose: their slopes may jump.
 bool has_kinks(const FunctionTable& functions) {
   const std::uint8_t* const end = functions.operation + functions.instructions;
@@ -125,13 +134,21 @@ class Tracker {
     const double h = last ? end_ - node_->sigma : step_;
     if (!last && h < least) return stop(TrackEnd::stalled, h);
     if (h * speed() < limits_.narrow && !last && looks()) return look();
-    Node& next = *spare_;
-    if (steps_to(*node_, h, last ? end_ : node_->sigma + h, &next)) {
+    if (ahead_.any() && !suits(ahead_.node[ahead_.next]->sigma - node_->sigma, h)) ahead_.clear();
+    if (!ahead_.any() && !last && looks_ahead(h)) close_ahead(h);
+    const bool is_ahead = ahead_.any(), is_told = is_ahead && ahead_.next > 0;
+    Node*& next = is_ahead ? ahead_.node[ahead_.next] : spare_;
+    if (is_ahead ? steps_ahead() : steps_to(*node_, h, last ? end_ : node_->sigma + h, next)) {
+      const double taken = is_ahead ? next->sigma - node_->sigma : h;
+      ahead_.next += is_ahead;
       advance(next);
-      step_ = std::fmin(stepper_.wanted_step(*node_), 4.0 * h);
+      step_ = std::fmin(stepper_.wanted_step(*node_), 4.0 * taken);
       looks_ = looks_ || step_ * speed() >= limits_.narrow;
       return true;
     }
+    if (is_ahead) ahead_.clear();
+    // what was extrapolated too far says nothing
+    if (is_told) return true;
     ++track_.rejected;
     step_ = 0.5 * h;
     if (has_kinks_ && looks_ && step_ * speed() < limits_.narrow && over_kink(h)) return true;
@@ -139,26 +156,57 @@ class Tracker {
     return step_ >= least || stop(TrackEnd::stalled, h);
   }
 
+  // Whether a node ahead is about as far away as a step should be.
+  static bool suits(double way, double h) { return way <= AHEAD_LONGER * h && way >= AHEAD_SHORTER * h; }
+  // Whether the steps that follow are told well enough by the way behind to be closed at once.
+  bool looks_ahead(double h) {
+    if (!has_before_ || has_kinks_ || path_.varies() || plan().blocks == 0) return false;
+    return h <= AHEAD_FIRST * (node_->place - before_->place);
+  }
+  void close_ahead(double h) {
+    double sigma[NodesAhead::MOST], at = node_->sigma;
+    const double growth = std::fmin(std::fmax(h / (node_->place - before_->place), AHEAD_SHORTER), AHEAD_GROWTH);
+    int count = 0;
+    for (double step = h; count < NodesAhead::MOST && at < end_; step *= growth) {
+      if (count && step * speed() < limits_.narrow) break;
+      at = at + 1.000001 * step >= end_ ? end_ : at + step;
+      sigma[count++] = at;
+    }
+    stepper_.close_ahead(*before_, *node_, sigma, count, &ahead_);
+  }
+  bool steps_ahead() {
+    Node* const next = ahead_.node[ahead_.next];
+    next->least = HUGE_VAL;
+    return stepper_.judge_ahead(*node_, &ahead_) &&
+           (continue_turns(stepper_, *node_, next) || next->sigma - node_->sigma <= limits_.angle_step) &&
+           sees_between(path_, stepper_, *node_, *next);
+  }
+
   bool steps_to(const Node& from, double h, double sigma, Node* next) {
     next->least = HUGE_VAL;
     return stepper_.step(from, h, sigma, next) && (continue_turns(stepper_, from, next) || h <= limits_.angle_step) &&
            sees_between(path_, stepper_, from, *next);
   }
-  // Goes on to a node, with the rows before it.
-  void advance(Node& next) {
+  // Goes on to a node, with the rows before it; the one whose room is free takes its place.
+  void advance(Node*& next) {
     ++track_.steps;
     const long from = row_;
-    while (row_ < rows_ && sigma_[row_] <= next.sigma) ++row_;
-    infill(stepper_, *node_, next, sigma_ + from, first_ + from, first_ + row_, out_);
+    while (row_ < rows_ && sigma_[row_] <= next->sigma) ++row_;
+    infill(stepper_, *node_, *next, sigma_ + from, first_ + from, first_ + row_, out_, nullptr,
+           has_before_ ? before_ : nullptr);
     go_to(next);
   }
-  void go_to(Node& next) {
-    if (kept_) keep(next);
-    reduce(&next);
-    if (&next == spare_)
-      std::swap(node_, spare_);
-    else
-      *node_ = std::move(next);
+  void go_to(Node*& next) {
+    if (kept_) keep(*next);
+    for (const TreeTurn& t : stepper_.tree_turns()) {
+      const double whole = out_.turn ? std::rint(next->state[t.state] / FULL_TURN) : 0.0;
+      for (int k = ahead_.next; whole != 0.0 && k < ahead_.count; ++k)
+        ahead_.node[k]->state[t.state] -= FULL_TURN * whole;
+    }
+    reduce(next);
+    Node* const free = before_;
+    before_ = node_, node_ = next, next = free;
+    has_before_ = true;
   }
 
   // Over a place within a refused step at which the slope of a function jumps, if that is what refuses it: steps up to it, and
@@ -191,13 +239,18 @@ class Tracker {
       if (!stepper_.close_after(step, sigma_[k], guess.data(), &row.back())) return false;
       adopt_turns(stepper_, behind.turn, &row.back());
     }
-    for (Node& next : way) advance(next);
+    for (Node& each : way) {
+      *spare_ = std::move(each);
+      advance(spare_);
+    }
     ++track_.steps;
     for (Node& at : row) {
       reduce(&at);
       put_row(at, limits_.jump, first_ + row_++, out_);
     }
-    go_to(behind);
+    *spare_ = std::move(behind);
+    go_to(spare_);
+    has_before_ = false;
     step_ = stepper_.wanted_step(*node_);
     return true;
   }
@@ -224,7 +277,7 @@ class Tracker {
   void keep(const Node& next) {
     kept_->push_back({*node_, next});
     // rows need no Jacobians, which are the largest part of a node
-    for (Node* node : {&kept_->back().from, &kept_->back().to}) node->jacobian = {}, node->factored = {};
+    for (Node* node : {&kept_->back().from, &kept_->back().to}) node->jacobian.resize(0), node->factored = {};
   }
   bool looks() const { return looks_ && !path_.varies() && plan().blocks > 0; }
   const Plan& plan() const { return stepper_.plan(); }
@@ -240,6 +293,7 @@ class Tracker {
 
   // What refuses the steps, by arclength.
   bool look() {
+    has_before_ = false, ahead_.clear();
     const Stretch stretch = walk_stretch(path_, unit_, limits_, *node_, step_, end_);
     track_.steps += stretch.steps, track_.rejected += stretch.rejected;
     const PassageEnd kind = stretch.end();
@@ -302,7 +356,7 @@ class Tracker {
       if (p.end == PassageEnd::dead_centre || p.end == PassageEnd::branch_point) seen_.push_back(limit_of(p));
   }
 
-  void path_inputs(double sigma, std::vector<double>* inputs) const {
+  void path_inputs(double sigma, Node::Few* inputs) const {
     PathPoint point;
     path_.at(sigma, &point);
     *inputs = point.inputs;
@@ -328,9 +382,12 @@ class Tracker {
   Stepper stepper_;
   Progress progress_;
   Track track_;
-  Node nodes_[2];
+  Node nodes_[3];
   Node* node_ = nodes_;
-  Node* spare_ = nodes_ + 1;  // the one before `node_`, or one that was refused: its room is used again
+  Node* before_ = nodes_ + 1;  // the node before, where the last step led from there
+  Node* spare_ = nodes_ + 2;   // one that was refused, or nothing: its room is used again
+  bool has_before_ = false;
+  NodesAhead ahead_;
   long row_ = 0;
   double end_ = 0.0, step_ = 0.0;
   std::vector<Limit> seen_;  // ends that were seen ahead

@@ -101,9 +101,9 @@ void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* 
 bool continue_turns(Stepper& stepper, const Node& a, Node* b);
 struct Chosen;
 // Guesses for rows [begin, end) at place[0 ... end - begin) between two nodes; `chosen`: of these states and turns
-// alone.
+// alone; `before`: the node before a, whose values and derivatives tell the curve, too, null where none is known.
 void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
-            const RowGuesses& out, const Chosen* chosen = nullptr);
+            const RowGuesses& out, const Chosen* chosen = nullptr, const Node* before = nullptr);
 // How far the inputs of `count` rows (column after column, `stride` apart) lie from the curve between two nodes.
 double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
              const double* inputs, long stride);

@@ -186,7 +186,7 @@ class Worker {
     if (reach_) {
       const bool known = found.limit.kind == PassageEnd::dead_centre || found.limit.kind == PassageEnd::branch_point;
       reach_->stops[step > 0] = {known ? found.limit.kind : PassageEnd::lost,
-                                 known ? found.limit.at.inputs : found.inputs};
+                                 known ? (std::vector<double>)found.limit.at.inputs : found.inputs};
     }
     return false;
   }
