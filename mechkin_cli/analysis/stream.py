@@ -47,7 +47,6 @@ class Stream:
         model: of the file.
         layouts: of the tables that were asked for.
         rows: how many a block has, but for the last one.
-        run_rows: how many the run has.
         run: `sweep`, or the name of the response.
         branch: the mode of the rows, and how the first assembly was found.
         ended: where a response has ended, as far as its rows have been taken; None before.
@@ -62,7 +61,7 @@ class Stream:
         run: str = SWEEP,
     ) -> None:
         self.model, self.layouts, self.rows, self.run = model, layouts, rows, run
-        self.source, self.run_rows = source, source.run_rows
+        self.source = source
         if isinstance(source, Sweep) and has_parts(source.session):
             whole = [each.name for each in source.asked if each.kind in LEDGER_KINDS]
             if whole:
@@ -71,9 +70,14 @@ class Stream:
                     "leave out the tables that read it, or take all rows at once"
                 )
         self._verdicts = RunVerdicts()
-        self._notes = Notes(self.run_rows)
+        self._notes = Notes(0)
         self.branch = "", ""
         self.ended: Ended | None = None
+
+    @property
+    def run_rows(self) -> int:
+        """How many rows the run has; of a response that may be stopped, it is made to tell."""
+        return self.source.run_rows
 
     def __iter__(self) -> Iterator[Block]:
         """The blocks, in the order of the rows.

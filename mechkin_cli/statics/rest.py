@@ -22,7 +22,7 @@ from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Continued, input_number, input_text, input_unit
 from mechkin_cli.statics.forces import summed
-from mechkin_cli.statics.newton import Balancing, search
+from mechkin_cli.statics.newton import Balancing, determinant, search
 from mechkin_cli.statics.places import Place, Statics, eigen
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
@@ -206,7 +206,7 @@ class _Branch:
         """The stiffness at the end of a stretch; None where it has none, or where its determinant
         has another sign than at the beginning."""
         found = self._slopes(place, time)
-        if found is None or _determinant(found) * _determinant(near) <= 0.0:
+        if found is None or determinant(found) * determinant(near) <= 0.0:
             return None
         return found
 
@@ -455,22 +455,6 @@ class _Arc:
                 return None
             y = y + by
         return None
-
-
-def _determinant(matrix: Floats) -> float:
-    """The determinant of a small matrix, by elimination."""
-    rows, found = [row[:] for row in matrix.tolist()], 1.0
-    for k in range(len(rows)):
-        pivot = max(range(k, len(rows)), key=lambda i: abs(rows[i][k]))
-        if pivot != k:
-            rows[k], rows[pivot], found = rows[pivot], rows[k], -found
-        if rows[k][k] == 0.0:
-            return 0.0
-        found *= rows[k][k]
-        for i in range(k + 1, len(rows)):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
-    return found
 
 
 def _least(matrix: Floats) -> float:

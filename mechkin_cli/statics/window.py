@@ -23,7 +23,15 @@ from mechkin_cli.mechanism import Limit
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.search import all_assemblies, pose_number
 from mechkin_cli.session import input_number, input_text, input_unit, turn_of
-from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search, settle
+from mechkin_cli.statics.newton import (
+    Balancing,
+    Search,
+    SearchEnd,
+    determinant,
+    search,
+    settle,
+    slopes,
+)
 from mechkin_cli.statics.places import Place, Statics
 from mechkin_cli.statics.result import EquilibriumResult
 from mechkin_cli.statics.stability import judged
@@ -63,6 +71,18 @@ class Known:
     balancing: Balancing
     window: tuple[Limit, ...]
     found: list[Search] = field(default_factory=list)
+    _counted: int = 0
+    _excess: int = 0
+
+    @property
+    def excess(self) -> int:
+        """How many more of the equilibria have an even number of unstable directions than an odd
+        one."""
+        for one in self.found[self._counted :]:
+            known = slopes(self.balancing.forces, one.place)
+            self._excess += 0 if known is None else int(np.sign(determinant(known[1])))
+        self._counted = len(self.found)
+        return self._excess
 
     @property
     def ends(self) -> tuple[Floats, Floats]:
@@ -382,7 +402,9 @@ def _from_starts(
     low, high = known.ends
     base = statics.session.inputs.values[:, 0]
     least = max(response.search.starts, tolerances.WINDOW_STARTS)
+    torus = _is_torus(known)
     starts = ended = since = 0
+    chance = 1.0
     while starts < tolerances.MOST_WINDOW_STARTS:
         inputs = base.copy()
         inputs[statics.free] = low + (high - low) * _spread(starts, statics.count)
@@ -400,11 +422,12 @@ def _from_starts(
             ended += 1
             since = 0 if known.add(found) else since + 1
         starts += 1
-        if starts >= least and since >= ended // 2:
+        # as of assemblies: each of the known ones could have been the last that was missing
+        pairs = max(len(known.found) * (len(known.found) + 1), 1)
+        chance = min(1.0, float(functions.log(pairs / tolerances.SEARCH_DOUBT)) / max(since, 1))
+        enough = chance <= tolerances.WINDOW_CHANCE or (not ended and starts >= 4 * least)
+        if starts >= least and enough and not (torus and known.excess):
             break
-    # as of assemblies: each of the known ones could have been the last that was missing
-    pairs = max(len(known.found) * (len(known.found) + 1), 1)
-    chance = min(1.0, float(functions.log(pairs / tolerances.SEARCH_DOUBT)) / max(since, 1))
     count = len(known.found)
     text = (
         f"{count} equilibri{'um' if count == 1 else 'a'} found from {starts} starts; with "
@@ -413,7 +436,21 @@ def _from_starts(
     )
     at = f"{ended} searches ended at an equilibrium, the last {since} of them at known ones"
     hint = "ask for more starts: starts: 1000"
-    return [Diagnostic("window-starts", "note", text, response.place, at, hint=hint)]
+    notes = [Diagnostic("window-starts", "note", text, response.place, at, hint=hint)]
+    if torus and known.excess:
+        # M. Morse: on a torus minima and saddles of even index are as many as those of odd index
+        text = "equilibria are missing: over whole turns those of even and of odd index are as many"
+        notes.append(Diagnostic("window-missing", "warning", text, response.place, hint=hint))
+    return notes
+
+
+def _is_torus(known: Known) -> bool:
+    """Whether the window has every place of an open chain of joints that turn."""
+    session, (low, high) = known.balancing.chosen, known.ends
+    inputs = session.problem.motion.inputs[: len(known.window)]
+    turns = all(turn_of(session.problem, item) is not None for item in inputs)
+    wide = bool((high - low >= 2.0 * np.pi - tolerances.SAME_EQUILIBRIUM).all())
+    return turns and wide and not session.graph.closings
 
 
 def _spread(number: int, count: int) -> Floats:

@@ -74,6 +74,9 @@ nearer to each other than that are seen where the force comes near to zero betwe
 WINDOW_STARTS: Final = 64
 """Starts of a search in a window of several freedoms, at least."""
 
+WINDOW_CHANCE: Final = 0.05
+"""The chance that one more search finds another equilibrium, at which a search in a window ends."""
+
 MOST_WINDOW_STARTS: Final = 2048
 """Starts of a search in a window of several freedoms, at most."""
 

@@ -90,6 +90,9 @@ def _of_sweep(result: Result, row: int, held: Sequence[str]) -> tuple[Session, D
     session = result.session
     motion = session.problem.motion
     names = [item.name for item in motion.inputs]
+    if motion.rest is not None and not held:
+        # of a sweep at rest what nothing drives is free
+        held = [name for number, name in enumerate(names) if number not in motion.rest.inputs]
     for name in held:
         if name not in names:
             hint = nearest_hint(name, names) or f"inputs are {', '.join(names) or 'none'}"
@@ -104,6 +107,8 @@ def _of_sweep(result: Result, row: int, held: Sequence[str]) -> tuple[Session, D
         constraint_rates=None,
         course=None,
         grid=None,
+        leader=None,
+        rest=None,
     )
     inputs = session.inputs
     # behind the inputs is what is held as idle

@@ -245,7 +245,7 @@ def stationary(loop: SprungLoop) -> list[tuple[float, float]]:
     def take(theta: float, energy: float) -> None:
         theta = math.remainder(theta, TURN)
         for known, level in found:
-            if abs(math.remainder(theta - known, TURN)) < 1e-5 and abs(energy - level) < 1e-7:
+            if abs(math.remainder(theta - known, TURN)) < 1e-4 and abs(energy - level) < 1e-6:
                 return
         found.append((theta, energy))
 
