@@ -131,7 +131,8 @@ class Known:
         found = self.balancing.forces.at(place, np.zeros((values.size, 1)))
         left = float(np.max(np.abs(found.forces)))
         if not (found.good.all() and left <= tolerances.TURNED_BALANCE * one.largest):
-            return None
+            as_found = (values >= low - slack) & (values <= high + slack)
+            return one if as_found.all() else None
         return one._replace(place=place)
 
 
