@@ -41,7 +41,6 @@ from mechkin_cli.show import Listed, Listing
 from mechkin_cli.structure import listed
 
 if TYPE_CHECKING:
-
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
