@@ -30,7 +30,7 @@ def test_every_part_measures_from_few_on(name: str) -> None:
 
 
 def test_all_parts_can_be_named() -> None:
-    assert scale.PARTS == ("rows", *PARTS)
+    assert ("rows", *PARTS) == scale.PARTS
 
 
 def test_slopes_are_those_on_log_paper() -> None:
