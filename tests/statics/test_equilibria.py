@@ -395,8 +395,8 @@ def test_sensitivities_of_places_that_balance_are_refused() -> None:
 
 
 def test_loads_of_time_are_taken_at_the_moment_that_is_given() -> None:
-    loads = [*PENDULUM["loads"], {"type": "force", "joint": "A", "value": "1 N*m/s*time"}]
-    loads[1] = {"type": "torque", "link": "bob", "torque": [0, 0, "1 N*m/s*time"]}
+    torque = {"type": "torque", "link": "bob", "torque": [0, 0, "1 N*m/s*time"]}
+    loads = [*PENDULUM["loads"], torque]
     own = {"late": {"near": {"A.theta": 0}, "time": 2}, "first": {"near": {"A.theta": 1}}}
     m = mk.load(PENDULUM | {"loads": loads, "equilibria": own})
     late = m.equilibrium("late")

@@ -197,3 +197,8 @@ def test_a_platform_on_six_springs() -> None:
     assert pushes == pytest.approx([pushes[0]] * 6, rel=1e-9)
     lean = (r["B1.point.z"] - r["A1.point.z"]) / np.linalg.norm(r["B1.point"] - r["A1.point"])
     assert 6 * pushes[0] * lean[0] == pytest.approx(60 * G, rel=1e-9)
+
+
+def test_actuators_do_not_go_with_what_rests() -> None:
+    with pytest.raises(mk.InvalidFile, match="actuators"):
+        mk.loads(LEVER + MOTION + "actuators: [A.theta, E.theta]\n")
