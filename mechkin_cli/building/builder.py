@@ -295,6 +295,9 @@ def build_problem(
     loads = LoadBuilder(fields, links, joints, points, quantities)
     loads.add_all(file.loads)
     mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
+    if motion.rest is not None and file.actuators:
+        text = "efforts of actuators do not go with coordinates that rest under the loads"
+        fields.error("rest-and-actuators", ("actuators",), text, "remove actuators:, or rest:")
     if motion.rest is not None:
         mechanism = without_friction(fields, mechanism, ("motion", "rest"))
     problem = replace(problem, mechanism=mechanism, load_laws=laws)

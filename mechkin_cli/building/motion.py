@@ -102,11 +102,34 @@ def build_motion(
     if motion is not None and fields.error_count == errors:
         if motion.span is None:
             return motion
+        if motion.rest is not None:
+            return _whole_at_rest(fields, section, joints, per_row, motion.span.run_rows)
         rows, build = sampled(motion.span.run_rows), _rows_of(fields, section, joints)
         return long_motion(motion._replace(span=None), rows, build, MOST_NUMBERS // per_row)
     fields.failed.add(SWEEP)
     fields.refused.add("time")
     refuse_efforts(fields, joints)
+    return MotionInputs((), 1)
+
+
+def _whole_at_rest(
+    fields: Fields,
+    section: MotionSection,
+    joints: Mapping[str, Joint],
+    per_row: int,
+    rows: int,
+) -> MotionInputs:
+    """A motion of many rows with coordinates at rest: where these are is found for all rows."""
+    most = MOST_NUMBERS // per_row
+    if rows <= most:
+        motion = _swept(fields, section, joints, per_row, np.arange(rows))
+        assert motion is not None
+        return motion._replace(span=None)
+    text = "a sweep at rest is held whole, and has too many rows for that"
+    fields.error(
+        "too-many-rows", ("motion", "rest"), f"{text}: {rows} (limit {most})", "take fewer"
+    )
+    fields.failed.add(SWEEP)
     return MotionInputs((), 1)
 
 
@@ -144,9 +167,6 @@ def _resting(
         text = "a drive that is tied to another does not go with coordinates at rest"
         hint = "write a coupling instead of drive: tie, or drive: own"
         fields.error("rest-and-tie", ("motion", "rest"), text, hint)
-    if motion.span is not None:
-        text = "a sweep at rest has fewer rows than this"
-        fields.error("too-many-rows", ("motion", "rest"), text, "sweep in larger steps")
     still = np.zeros(motion.rows)
     orders = np.zeros((4, motion.rows))
     inputs = []

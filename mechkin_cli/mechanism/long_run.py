@@ -94,6 +94,11 @@ class LongRun:
         return self._build(np.arange(self.rows))._replace(span=None, leader=self.leader)
 
     @property
+    def rest(self) -> None:
+        """No coordinate is at rest: where such stand is found for all rows at once."""
+        return None
+
+    @property
     def course(self) -> Course | None:
         """The course of the inputs along all rows."""
         return self.whole.course

@@ -127,6 +127,12 @@ class Rest(NamedTuple):
     ends: tuple[tuple[Status, Diagnostic], ...] = ()
     notes: tuple[Diagnostic, ...] = ()
 
+    def part(self, first: int, last: int) -> Rest:
+        """That of the rows from `first` to `last`, both included."""
+        rows = last + 1 - first
+        begin, end = self.first - first, self.last - first
+        return self._replace(first=min(max(begin, 0), rows), last=min(max(end, -1), rows - 1))
+
 
 class MotionInputs(NamedTuple):
     """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
@@ -164,6 +170,7 @@ class MotionInputs(NamedTuple):
             constraint_rates=None if rates is None else rates[:, rows],
             span=Span(first, last + 1 - first, self.rows),
             leader=self.leading_number,
+            rest=None if self.rest is None else self.rest.part(first, last),
         )
 
     @property

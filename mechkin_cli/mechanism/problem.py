@@ -102,12 +102,14 @@ class Problem:
 
     @property
     def acting(self) -> Sequence[tuple[str, str]]:
-        """Where efforts act (joint, coordinate): at actuators, else at the inputs."""
-        drives, rest = self.mechanism.drives, self.motion.rest
-        if drives is not None:
-            return drives.acting
-        free = () if rest is None else rest.inputs
-        return [at for number, at in enumerate(self.motion.driven) if number not in free]
+        """Where efforts act (joint, coordinate): at actuators, else at the inputs; none where
+        nothing drives."""
+        drives, motion = self.mechanism.drives, self.motion
+        acting = motion.driven if drives is None else drives.acting
+        if motion.rest is None:
+            return acting
+        free = [motion.driven[number] for number in motion.rest.inputs]
+        return [at for at in acting if at not in free]
 
     @cached_property
     def has_idle(self) -> bool:

@@ -30,6 +30,7 @@ COLUMNS = (
     *("O1.theta", "O2.theta", "O4.theta", "O4.theta_dot", "O4.theta_ddot"),
     *("O1.effort", "O2.s", "O2.s_dot", "O4.force.x", "O4.force.y"),
 )
+PARTS = "rows", "loops", "coupled", "variants", "freedoms", "response-loops"
 WAYS = {
     "csv": ["--format", "csv"],
     "parquet": ["--format", "parquet"],
@@ -218,24 +219,25 @@ def part_page(lines: Sequence[dict[str, float]]) -> str:
 
 def main() -> None:
     """Measures and prints."""
-    sys.path[:0] = [str(HERE.parent), str(HERE.parents[1])]
-    from benchmark.scale_parts import PARTS
-
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--most", type=float, default=1e7, help="rows of the longest run")
     parser.add_argument("--up-to", type=float, default=math.inf, help="of the other parts")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--kernel", action="store_true", help="peaks beside the kernel; responses")
-    parser.add_argument("parts", nargs="*", choices=[[], "rows", *PARTS], metavar="PART")
+    parser.add_argument("parts", nargs="*", choices=[[], *PARTS], metavar="PART")
     options = parser.parse_args()
     if options.kernel:
         print(beside_the_kernel(round(options.most)))
         return
-    for name in options.parts or ("rows", *PARTS):
+    for name in options.parts or PARTS:
         if name == "rows":
             lines, shown = measured(round(options.most)), page
         else:
-            part, most = PARTS[name]
+            # after the rows: the memory of this process would count for those that it begins
+            sys.path[:0] = [str(HERE.parent), str(HERE.parents[1])]
+            from benchmark import scale_parts
+
+            part, most = scale_parts.PARTS[name]
             lines, shown = [], part_page
             for line in part(int(min(most, options.up_to))):
                 lines.append(line)

@@ -23,7 +23,7 @@ from scipy.integrate import solve_ivp
 from structure.networks import scissors, windows
 
 import mechkin_cli as mk
-from benchmarks.rows_of_loops import text as falling
+from benchmarks.rows_of_loops import LOOPS, text as falling
 
 Line = dict[str, float]
 ROUNDS = 3
@@ -117,7 +117,7 @@ def freedoms(most: int) -> Iterator[Line]:
 
 def response_loops(most: int) -> Iterator[Line]:
     """Parallel cranks in a row, ten seconds of fall, apart from branch points and through them."""
-    for count in doubled(1, most):
+    for count in (one for one in LOOPS if one <= most):
         line: Line = {"loops": count}
         for name, angle in (("fall", 3.0), ("through branch points", 1.0)):
             model = mk.loads(falling(count, angle, END))

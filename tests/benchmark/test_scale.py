@@ -29,6 +29,10 @@ def test_every_part_measures_from_few_on(name: str) -> None:
     assert all(first[column] > 0.0 or first[column] != first[column] for column in columns)
 
 
+def test_all_parts_can_be_named() -> None:
+    assert ("rows", *PARTS) == scale.PARTS
+
+
 def test_slopes_are_those_on_log_paper() -> None:
     lines = [{"n": n, "straight": 3.0 * n, "cubic": n**3.0} for n in (1, 2, 8)]
     told = scale.slopes(lines, "n", ["straight", "cubic"])

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.session.following import step_limits
 from mechkin_cli.session import turn_count
+from mechkin_cli.session.following import step_limits
 
 REFUSALS = (TypeError, ValueError, OverflowError, MemoryError)
 INDICES = [-(2**40), -(2**31), -1000, -3, -2, -1, 0, 1, 2, 3, 4, 7, 1000, 2**31 - 1, 2**31, 2**40]

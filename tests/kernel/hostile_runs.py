@@ -24,9 +24,9 @@ from references import FILE_OF
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.plan.plan import build_plan
+from mechkin_cli.session import turn_count
 from mechkin_cli.session.cells import SWITCHES
 from mechkin_cli.session.following import step_limits
-from mechkin_cli.session import turn_count
 from mechkin_cli.tape.tape import CONDITIONS, Operation
 
 HUGE = 2**59

@@ -451,3 +451,35 @@ def test_a_force_that_follows_its_link_leaves_the_stiffness_unsymmetric() -> Non
     assert [r["A.theta"][0], r["B.theta"][0]] == pytest.approx([0, 0], abs=1e-9)
     assert r["row.event"].tolist() == ["stable"]
     assert np.isnan(r["row.frequency"]).all()
+
+
+def test_equilibria_at_dead_centres_of_the_windows_coordinate() -> None:
+    """A slider-crank whose weight pulls along its guide: it rests in line, where the slider turns
+    back and no force along it tells anything."""
+    text = """
+format: 1
+plane: xy
+units: {length: mm, force: N}
+links:
+  crank: {mass: 1, center_of_mass: [0, 30]}
+  rod: {}
+  slider: {}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: R, links: [crank, rod], point: [0, 40]}
+  C: {type: R, links: [rod, slider], point: [80, 0]}
+  S: {type: P, links: [ground, slider], point: [80, 0], axis: [1, 0]}
+loads:
+  - {type: gravity, g: [-9810, 0]}
+"""
+    m = mk.loads(text)
+    r = m.equilibrium(window={"S.s": (-100, 100)})
+    rod = hypot(80, 40)
+    wanted = [rod - 40 - 80, rod + 40 - 80]
+    assert r["S.s"] == pytest.approx(wanted, abs=1e-9)
+    assert r["row.event"].tolist() == ["stable", "unstable"]
+    assert np.isnan(r["row.least_stiffness"]).all()
+    by_crank = m.equilibrium(window={"A.theta": (-180, 180)})
+    # the slider to the right of the crank; to its left is another assembly
+    right = sorted(s for s in by_crank["S.s"] if s > -100)
+    assert right == pytest.approx(wanted, abs=1e-9)

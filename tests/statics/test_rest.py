@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import radians, sin
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -161,3 +162,38 @@ def test_what_does_not_take_a_sweep_at_rest_says_so() -> None:
         m.vary({"k": [1, 2]}, ["E.theta"])
     r = m.analyze(errors=True)
     assert all(why for why in r.errors.why.values())
+
+
+def test_blocks_of_a_stream_end_where_the_branch_does() -> None:
+    text = Path("mechanisms/statics/toggle.yaml").read_text(encoding="utf-8")
+    m = mk.loads(text.replace("to: 18", "to: 24"))
+    whole = m.analyze()
+    for rows in (3, 5, 100):
+        blocks = list(m.stream(["A.theta", "row.status"], rows=rows))
+        angles = np.concatenate([block["A.theta"] for block in blocks])
+        assert angles.tobytes() == whole["A.theta"].tobytes()
+        status = np.concatenate([block["row.status"] for block in blocks])
+        assert status.tolist() == whole["row.status"].tolist()
+
+
+def test_a_platform_on_six_springs() -> None:
+    """Five of its legs rest while the sixth is driven: as where that one is held."""
+    text = Path("mechanisms/classics/stewart.yaml").read_text(encoding="utf-8")
+    head = text[: text.index("\nmotion:")] + "\nloads:\n  - {type: gravity, g: [0, 0, -9.81]}\n"
+    for k in range(1, 7):
+        head += f"  - {{type: spring, joint: L{k}, coordinate: s, stiffness: 20000}}\n"
+    legs = [f"L{k}.s" for k in range(1, 6)]
+    near = ", ".join(f"{leg}: 0" for leg in legs)
+    held = f"equilibria: {{one: {{near: {{{near}}}, driven: {{L6.s: {{at: 0.04}}}}}}}}\n"
+    rest = f"{{inputs: {{L6.s: {{from: 0, to: 0.1, step: 0.02}}}}, rest: [{', '.join(legs)}]}}"
+    one = mk.loads(head + held).equilibrium("one")
+    rows = mk.loads(head + f"motion: {rest}\n").analyze()
+    for name in (*legs, "L6.effort"):
+        assert rows[name][2] == pytest.approx(one[name][0], rel=1e-9)
+    # with all six free, the legs alike, each pushes along itself
+    free = ", ".join(f"L{k}.s: 0" for k in range(1, 7))
+    r = mk.loads(head + f"equilibria: {{all: {{near: {{{free}}}}}}}\n").equilibrium("all")
+    pushes = [-20000 * r[f"L{k}.s"][0] for k in range(1, 7)]
+    assert pushes == pytest.approx([pushes[0]] * 6, rel=1e-9)
+    lean = (r["B1.point.z"] - r["A1.point.z"]) / np.linalg.norm(r["B1.point"] - r["A1.point"])
+    assert 6 * pushes[0] * lean[0] == pytest.approx(60 * G, rel=1e-9)
