@@ -204,9 +204,25 @@ loads:
 ASKED = ["a.force", "a.moment", "pose.rx.effort", "row.potential_energy"]
 
 
-def test_the_dense_balance_has_them() -> None:
-    """Forces on the body and their moments, written down once more without the kernel."""
-    r = mk.loads(MOUNTED).analyze()
+@pytest.mark.parametrize("size", [0, 70, 9000])
+def test_the_dense_balance_has_them(size: int) -> None:
+    """Forces on the body and their moments, written down once more without the kernel; a crank
+    beside it (mm) makes the mechanism, and the kernel's unit of length, larger and smaller."""
+    text = MOUNTED
+    if size:
+        turn = "axis: [0, 0, 1]}"
+        joints = (
+            f"C: {{type: R, links: [ground, crank], point: [{size}, 0, 0], {turn}, "
+            f"D: {{type: R, links: [crank, rod], point: [0, {size}, 0], {turn}, "
+        )
+        text = text.replace("links: {", "links: {crank: {}, rod: {}, ", 1)
+        text = text.replace("joints: {", f"joints: {{{joints}", 1)
+        text = text.replace(
+            "  inputs:\n", "  inputs:\n    C.theta: {at: 0}\n    D.theta: {at: 0}\n"
+        )
+    model = mk.loads(text)
+    assert (model.session.layout.length == 1.0) == (not size)
+    r = model.analyze()
     for row in range(3):
         motion = row_motion(r.result, row)
         borne = borne_wrenches(r.result, motion, row)["engine"]

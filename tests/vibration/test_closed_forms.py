@@ -274,6 +274,8 @@ motion: {{inputs: {{A.theta: {{at: 0}}}}}}
     assert found.values[3, 0] == pytest.approx(1 / (2 * G * 0.5), rel=1e-10)
     assert v.effective_stiffness("tip.position.x") == pytest.approx(2 * G * 0.5, rel=1e-11)
     assert found.outputs == ("A.force.x", "A.force.y", "A.force.z", "tip.position.x")
+    s = v.state_space(["tip.position.x"], ["A.force.x"])
+    assert s.D[0, 0] == pytest.approx(2 * 0.5 / inertia - 1.0, rel=1e-10)
 
 
 def test_sensitivities() -> None:

@@ -78,3 +78,49 @@ equilibria: {rest: {near: {A.theta: 0.5}}}
     h = 1e-4
     slope = (frequency(3 + h) - frequency(3 - h)) / (2 * h)
     assert v.sensitivity("k") == pytest.approx([slope], rel=1e-7)
+
+
+LOOP = """format: 1
+plane: xy
+units: {angle: rad}
+links:
+  a: {mass: 1, center_of_mass: [0, 0.5]}
+  b: {}
+  c: {mass: 2, center_of_mass: [1.3, 0.7]}
+  base: {}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [a, b], point: [0, 1]}
+  C: {type: R, links: [b, c], point: [1.2, 1.4]}
+  D: {type: R, links: [base, c], point: [1.6, 0]}
+  S: {type: P, links: [ground, base], point: [1.6, 0], axis: [1, 0.5]}
+loads:
+  - {type: gravity, g: [0, -9.81]}
+  - {type: spring, joint: A, coordinate: theta, stiffness: 40}
+  - {type: spring, joint: D, coordinate: theta, stiffness: 30, free: 0.1}
+equilibria:
+  rest: {near: {A.theta: 0}, driven: {S.s: {at: PLACE}}}
+"""
+
+
+@pytest.mark.parametrize("name", ["A.theta", "C.theta"])
+def test_a_base_that_moves_inside_a_loop(name: str) -> None:
+    """Moved slowly, the loop goes from equilibrium to equilibrium, and its drive feels that."""
+
+    def rests(place: float) -> np.ndarray:
+        r = mk.loads(LOOP.replace("PLACE", repr(place))).equilibrium("rest", [name, "S.effort"])
+        return np.array([r["A.theta"][0], r["C.theta"][0], r["S.effort"][0]])
+
+    h = 1e-4
+    slopes = (8 * (rests(h) - rests(-h)) - (rests(2 * h) - rests(-2 * h))) / (12 * h)
+    v = mk.loads(LOOP.replace("PLACE", "0")).vibration(coordinates=[name])
+    told = v.response([0.0], "S.s", ["A.theta", "C.theta", "S.effort"])
+    assert told.values[:, 0].real == pytest.approx(slopes, rel=1e-7)
+    assert told.values[:, 0].imag == pytest.approx(np.zeros(3), abs=1e-12)
+    # the state is the coordinate itself, and not what the chart makes of it
+    s = v.state_space(["S.s"], [name])
+    assert s.C == pytest.approx(np.array([[1.0, 0, 0, 0]]), abs=1e-9)
+    assert s.D == pytest.approx(np.zeros((1, 1)), abs=1e-9)
+    slope = slopes[0 if name == "A.theta" else 1]
+    held = -s.A[2, 1] / s.A[2, 0]
+    assert held == pytest.approx(slope, rel=1e-7)
