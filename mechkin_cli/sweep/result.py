@@ -216,7 +216,7 @@ class Result:
     @property
     def sound(self) -> bool:
         """Whether every row is `ok`."""
-        return np.count_nonzero(are(self.status, Status.ok)) == self.status.size
+        return bool(np.count_nonzero(are(self.status, Status.ok)) == self.status.size)
 
     @property
     def condition(self) -> Floats:

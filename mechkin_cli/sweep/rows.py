@@ -144,7 +144,7 @@ class SweepRows:
     @property
     def has_failed(self) -> bool:
         """Whether some row did not close."""
-        return np.count_nonzero(are(self.status, Status.not_converged)) > 0
+        return bool(np.count_nonzero(are(self.status, Status.not_converged)))
 
 
 SHOWN = 6
