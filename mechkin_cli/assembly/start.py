@@ -164,7 +164,11 @@ def _end_of_line(
 
 
 def _continued(continued: Continued) -> AssemblyStart:
-    """From the variant of the file's own parameters."""
+    """From the variant of the file's own parameters, or from the place that was chosen first."""
+    if continued.state is not None and continued.chosen is not None:
+        chosen: AssemblyStart = continued.chosen
+        own = replace(chosen, state=continued.state, turn=continued.turns, condition=None)
+        return replace(own, row=continued.row)
     if continued.state is not None:
         return AssemblyStart(
             continued.state, NEAR, "continued in the parameters", row=continued.row

@@ -34,7 +34,7 @@ from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
-from mechkin_cli.building.motion import build_motion, near_rest, point_guides
+from mechkin_cli.building.motion import build_motion, point_guides
 from mechkin_cli.building.play import build_plays, loose_in_sweep, note_tight, with_plays
 from mechkin_cli.building.responses import (
     build_assembly,
@@ -43,6 +43,7 @@ from mechkin_cli.building.responses import (
     note_spins,
     settled,
 )
+from mechkin_cli.building.rest import near_rest
 from mechkin_cli.building.source import without_collection
 from mechkin_cli.building.spacing import numbers_per_row
 from mechkin_cli.building.tables import (

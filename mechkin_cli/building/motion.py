@@ -25,6 +25,7 @@ from mechkin_cli.building.fields import (
     refuse_efforts,
 )
 from mechkin_cli.building.joints import Halves, parts_of
+from mechkin_cli.building.rest import resting
 from mechkin_cli.building.spacing import (
     Spacing,
     has_too_many_rows,
@@ -45,7 +46,6 @@ from mechkin_cli.mechanism import (
     Moments,
     MotionInputs,
     Part,
-    Rest,
     RigidLink,
     Span,
     Vector,
@@ -83,9 +83,7 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.mechanism import Assembly
     from mechkin_cli.show import Floats
-    from mechkin_cli.units import UnitSystem
 
 _RATES = ("rate", "acceleration", "jerk")
 _ORDERS = ("value", *_RATES)
@@ -153,52 +151,7 @@ def _swept(
         fields, path, inputs, joints, per_row, clock, grid, rows=rows, known=known
     )
     return (
-        motion if motion is None or not section.rest else _resting(fields, section, motion, joints)
-    )
-
-
-def _resting(
-    fields: Fields, section: MotionSection, motion: MotionInputs, joints: Mapping[str, Joint]
-) -> MotionInputs | None:
-    """The motion with the coordinates that nothing drives behind its inputs, all at rest; they
-    stand as drawn until it is known where the loads balance."""
-    errors = fields.error_count
-    if motion.constraints:
-        text = "a drive that is tied to another does not go with coordinates at rest"
-        hint = "write a coupling instead of drive: tie, or drive: own"
-        fields.error("rest-and-tie", ("motion", "rest"), text, hint)
-    still = np.zeros(motion.rows)
-    orders = np.zeros((4, motion.rows))
-    inputs = []
-    for item in motion.inputs:
-        written = orders.copy()
-        written[0] = item.written
-        inputs.append(
-            item._replace(rates=still, accelerations=still, jerks=still, written_orders=written)
-        )
-    taken = [(item.joint, item.coordinate) for item in inputs]
-    for number, name in enumerate(section.rest):
-        place: Path = ("motion", "rest", number)
-        if not is_coordinate(fields, place, name, joints, at_key=False):
-            continue
-        joint, _, coordinate = name.rpartition(".")
-        freedom = joints[joint].type.freedom_of
-        if any(j == joint and freedom[c] == freedom[coordinate] for j, c in taken):
-            text = f"{name} is the freedom of an input, or stands twice"
-            fields.error("rest-and-input", place, text, "name a coordinate that nothing drives")
-            continue
-        taken.append((joint, coordinate))
-        inputs.append(DrivenInput(joint, coordinate, still, still, still, still, orders))
-    if fields.error_count > errors:
-        return None
-    free = tuple(range(len(motion.inputs), len(inputs)))
-    return motion._replace(
-        inputs=tuple(inputs),
-        course=None,
-        paths=(),
-        unrated=(),
-        constraint_rates=None,
-        rest=Rest(free),
+        motion if motion is None or not section.rest else resting(fields, section, motion, joints)
     )
 
 
@@ -301,21 +254,6 @@ def build_inputs(
     course = build_course(fields, path, sections, inputs, expressions, clock, grid=bool(pair))
     paths = build_paths(fields, inputs, expressions, time) if expressions else motion.paths
     return motion._replace(course=course, paths=paths)
-
-
-def near_rest(motion: MotionInputs, assembly: Assembly, units: UnitSystem) -> MotionInputs:
-    """The motion whose coordinates at rest stand where `assembly: near` has them."""
-    if motion.rest is None:
-        return motion
-    inputs = list(motion.inputs)
-    for number in motion.rest.inputs:
-        item = inputs[number]
-        value = assembly.near.get(item.name, 0.0)
-        written = item.written_orders.copy()
-        written[0] = float(units.from_si(value, dimension_of(item.coordinate)))
-        values = np.full(motion.rows, value)
-        inputs[number] = item._replace(values=values, written_orders=written)
-    return motion._replace(inputs=tuple(inputs))
 
 
 def spaced_moments(

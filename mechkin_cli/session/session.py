@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from math import nan
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -70,10 +70,14 @@ class Packing:
 
 class Continued(NamedTuple):
     """A first assembly that is not to be chosen: continued from that of another variant. Without
-    states (states,) the branch was lost on the way; `row` is the one where it stands."""
+    states (states,) the branch was lost on the way; `row` is the one where it stands, and `turns`
+    (turn slots,) are those of angles there, where they are known. `chosen` is the assembly (an
+    `AssemblyStart`) of which it is another place of the same branch, whose words it takes."""
 
     state: Floats | None
     row: int
+    turns: Floats | None = None
+    chosen: Any = None
 
 
 class Between:

@@ -48,10 +48,11 @@ def rested(session: Session) -> Session:
         return _moved(session, rest._replace(solved=True), session.inputs.values)
     found = _Branch(sized, rest).follow(start.row, start.state)
     moved = _moved(session, found.rest, found.values)
-    if found.start is None or (session.base is None and session.first is None):
+    if found.start is None:
         return moved
-    # an assembly that is continued stands where the coordinates have not come to rest yet
-    return replace(moved, base=None, first=found.start)
+    # the assembly that was chosen stands where the coordinates have not come to rest yet: chosen
+    # where they have, it might be another
+    return replace(moved, base=None, first=found.start._replace(chosen=start))
 
 
 class _Rows(NamedTuple):
@@ -98,6 +99,7 @@ class _Branch:
         moments = session.problem.motion.time
         self.times = np.zeros(self.rows) if moments is None else moments.values
         self.unstable = np.zeros(self.rows, dtype=bool)
+        self.crossings: list[str] = []
 
     def follow(self, row: int, state: Floats) -> _Rows:
         """All rows, from the equilibrium near an assembly at a row on."""
@@ -127,7 +129,7 @@ class _Branch:
         ends = tuple(end or _NO_END for end in (before, after))
         notes = self._notes(first, last)
         rest = self.rest._replace(solved=True, first=first, last=last, ends=ends, notes=notes)
-        return _Rows(rest, self.values, Continued(place.state, row))
+        return _Rows(rest, self.values, Continued(place.state, row, place.turns))
 
     def _nowhere(self, row: int) -> _Rows:
         text = f"no place was found at which the loads balance in row {row + 1}"
@@ -175,11 +177,13 @@ class _Branch:
         self.unstable[known[-1]] = _least(matrix) < 0.0
         return known[-1], None
 
-    def lost(self, row: int) -> End:
-        """That the branch could not be followed beyond a row."""
+    def lost(self, row: int, at: str | None = None) -> End:
+        """That the branch could not be followed beyond a row, to which place at most."""
         text = f"the branch of equilibria could not be followed beyond row {row + 1}"
-        hint = "take smaller steps, or name other coordinates in rest:"
-        return Status.branch_lost, Diagnostic("rest-lost", "error", text, hint=hint)
+        hint = (
+            "see whether the loads have a value and a direction there, or end the sweep before it"
+        )
+        return Status.branch_lost, Diagnostic("rest-lost", "error", text, None, at, hint=hint)
 
     def _predicted(self, known: list[int], rows: Floats) -> Floats:
         """The coordinates at rest (free, rows), by a polynomial through rows that are known."""
@@ -289,20 +293,113 @@ class _Branch:
                 far = known_far
             elif far[0, 0] * matrix[0, 0] <= 0.0:
                 return None
+        before_them = (
+            place.inputs[self.free] if len(known) < 2 else self.values[self.free, known[-2]]
+        )
+        if not self._joined(place, known[-1], rows, inputs, states, turns, before_them):
+            return None
         self.values[:, rows] = inputs
         return last, far, chords
 
+    def _joined(
+        self,
+        place: Place,
+        row: int,
+        rows: Floats,
+        inputs: Floats,
+        states: Floats,
+        turns: Floats,
+        earlier: Floats,
+    ) -> bool:
+        """Whether equilibria in some rows surely lie on one branch with a place, that of the row
+        before them; `earlier` is where the coordinates at rest were (free,) in the row before that.
+
+        Short steps that change slowly do: before a fold they grow from row to row. Others do if
+        they are those that the rates of the branch at both ends tell.
+        """
+        every = np.concatenate([place.inputs[:, None], inputs], axis=1)
+        ways = np.diff(every, axis=1)
+        steps, driven = ways[self.free], np.delete(ways, self.free, axis=0)
+        sizes = np.max(np.abs(steps), axis=0)
+        before = np.concatenate(
+            [(place.inputs[self.free] - earlier)[:, None], steps[:, :-1]], axis=1
+        )
+        changes = np.max(np.abs(steps - before), axis=0)
+        slow = (sizes <= tolerances.SHORT_REST) & (
+            changes <= tolerances.SLOW_REST * sizes + tolerances.REST_ROUNDING
+        )
+        if slow.all():
+            return True
+        far = np.max(np.abs(driven), axis=0, initial=0.0)
+        if (np.maximum(sizes, far)[~slow] > tolerances.LONG_REST).any():
+            return False
+        times = np.concatenate([[self.times[row]], self.times[rows]])
+        for k in np.flatnonzero(~slow).tolist():
+            here = Place(inputs[:, k - 1], states[:, k - 1], turns[:, k - 1]) if k else place
+            there = Place(inputs[:, k], states[:, k], turns[:, k])
+            way, pace = ways[:, k].copy(), float(times[k + 1] - times[k])
+            way[self.free] = 0.0
+            begin = self._rate(here, way, float(times[k]), pace)
+            end = self._rate(there, way, float(times[k + 1]), pace)
+            if begin is None or end is None or begin[1] * end[1] <= 0.0:
+                return False
+            off = float(np.max(np.abs(steps[:, k] - 0.5 * (begin[0] + end[0]))))
+            most = float(np.max(np.abs([begin[0], end[0]])))
+            if off > tolerances.JOINED_REST * most + tolerances.REST_ROUNDING:
+                return False
+        return True
+
+    def _rate(
+        self, place: Place, way: Floats, time: float, pace: float
+    ) -> tuple[Floats, float] | None:
+        """How far (free,) the branch goes at the rate that it has at a place, where the inputs go a
+        `way` (inputs,) and time goes on by `pace`; and the determinant of the stiffness there."""
+        count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
+        size = max(float(np.max(np.abs(way))), tolerances.LEAST_REST_WAY)
+        steps = np.concatenate([self._differences(), np.zeros((way.size, 2))], axis=1)
+        steps[:, -2], steps[:, -1] = way * (h / size), -way * (h / size)
+        times = np.full(2 * count + 2, time)
+        times[-2] += pace * (h / size)
+        times[-1] -= pace * (h / size)
+        found = self.statics.beside(place, steps, times)
+        if not found.good.all():
+            return None
+        matrix = self._differentiated(found.forces[:, : 2 * count])
+        push = (found.forces[:, -2] - found.forces[:, -1]) * (size / (2.0 * h))
+        solved = eliminated(matrix.tolist(), (-push).tolist(), 0.0)
+        return None if solved is None else (np.array(solved), determinant(matrix))
+
     def _notes(self, first: int, last: int) -> tuple[Diagnostic, ...]:
-        """Which rows are unstable equilibria."""
+        """Which rows are unstable equilibria, and where other branches cross."""
+        notes = []
         rows = np.flatnonzero(self.unstable[first : last + 1]) + first
-        if not rows.size:
-            return ()
-        text = f"the equilibrium of {RowSet.of(rows)} is unstable: nothing stays there by itself"
-        hint = "hold it by an effort, or start at another equilibrium with assembly: {near: ...}"
-        return (Diagnostic("unstable", "warning", text, hint=hint),)
+        if rows.size:
+            text = (
+                f"the equilibrium of {RowSet.of(rows)} is unstable: nothing stays there by itself"
+            )
+            hint = (
+                "hold it by an effort, or start at another equilibrium with assembly: {near: ...}"
+            )
+            notes.append(Diagnostic("unstable", "warning", text, hint=hint))
+        for place in self.crossings:
+            text = "another branch of equilibria crosses this one, which goes straight on"
+            hint = "the mechanism may go the other way: start there with assembly: {near: ...}"
+            crossed = Diagnostic(
+                "equilibria-cross", "warning", text, None, f"at {place}", hint=hint
+            )
+            notes.append(crossed)
+        return tuple(notes)
 
 
 _NO_END = Status.ok, Diagnostic("", "note", "")
+
+
+class _Going(NamedTuple):
+    """The direction (free + 1,) of the branch at a place, of length one, and the slopes (free, free
+    + 1) of the forces."""
+
+    tangent: Floats
+    slopes: Floats
 
 
 class _Arc:
@@ -322,11 +419,12 @@ class _Arc:
     def follow(self) -> tuple[Place | None, End]:
         """The place at the next row; or None and why the branch does not come there."""
         place, gone = self.start, 0.0
-        tangent = self._tangent(place, gone, None)
+        going = self._going(place, gone, None)
         step = min(self.scale, tolerances.EQUILIBRIUM_REACH) / 4.0
         for _ in range(tolerances.MOST_ARCS):
-            if tangent is None:
-                return None, self.branch.lost(self.row)
+            if going is None:
+                return None, self.branch.lost(self.row, self._words(place, gone))
+            tangent = going.tangent
             if tangent[-1] <= 0.0:  # of the very first place
                 return None, self._fold(place, gone)
             # the last step ends at the row itself
@@ -334,29 +432,80 @@ class _Arc:
             found = self._corrected(place, gone, tangent, step, ends)
             if found is not None:
                 onward, there = found
-                following = self._tangent(onward, there, tangent)
-                if ends:
-                    return onward, None
-                turns_back = following is not None and following[-1] <= 0.0
-                if turns_back and step <= tolerances.FOLD_STEP:
-                    return None, self._fold(place, gone)
-                if (
-                    following is not None
-                    and not turns_back
-                    and float(summed(following * tangent)) > tolerances.ARC_COSINE
+                following = self._going(onward, there, tangent)
+                if following is not None and (
+                    self._is_one(place, gone, going, found, following)
+                    or self._crosses(place, gone, step, going, found, following)
                 ):
-                    place, gone, tangent = onward, there, following
-                    step = min(2.0 * step, tolerances.EQUILIBRIUM_REACH)
-                    continue
+                    turns_back = following.tangent[-1] <= 0.0
+                    if turns_back and step <= tolerances.FOLD_STEP:
+                        return None, self._fold(place, gone)
+                    if not turns_back and ends:
+                        return onward, None
+                    if not turns_back:
+                        place, gone, going = onward, there, following
+                        step = min(2.0 * step, tolerances.EQUILIBRIUM_REACH)
+                        continue
             step *= 0.5
             if step < tolerances.LEAST_ARC:
                 if tangent[-1] < tolerances.NEAR_FOLD:
                     return None, self._fold(place, gone)
-                return None, self.branch.lost(self.row)
-        return None, self.branch.lost(self.row)
+                return None, self.branch.lost(self.row, self._words(place, gone))
+        return None, self.branch.lost(self.row, self._words(place, gone))
 
-    def _fold(self, place: Place, gone: float) -> End:
-        """That the branch turns back at a place, and where."""
+    def _is_one(
+        self, place: Place, gone: float, going: _Going, found: tuple[Place, float], onward: _Going
+    ) -> bool:
+        """Whether two places surely lie on one branch: slopes of the forces, with the direction of
+        the branch, change by less than half of what would make them singular from either end to the
+        other, and to the middle of the curve between them (as branches of positions are judged,
+        docs/numerics.md)."""
+        if float(summed(onward.tangent * going.tangent)) <= tolerances.ARC_COSINE:
+            return False
+        first, last = self._y(place, gone), self._y(*found)
+        size = sqrt(float(summed((last - first) * (last - first))))
+        middle = 0.5 * (first + last) + (size / 8.0) * (going.tangent - onward.tangent)
+        inputs, _ = self._at(middle)
+        way = self.statics.way(np.stack([place.inputs, inputs], axis=1), place)
+        if way.reached < 2:
+            return False
+        between = self._slopes(Place(inputs, way.states[:, 1], way.turns[:, 1]), float(middle[-1]))
+        if between is None:
+            return False
+        border = going.tangent + onward.tangent
+        border = border / sqrt(float(summed(border * border)))
+        begin, half, end = (
+            np.concatenate([slopes, border[None, :]])
+            for slopes in (going.slopes, between[1], onward.slopes)
+        )
+        pairs = ((begin, half), (begin, end), (end, half), (end, begin))
+        return all(_change(one, other) <= tolerances.SPECTRAL_RADIUS for one, other in pairs)
+
+    def _crosses(
+        self,
+        place: Place,
+        gone: float,
+        step: float,
+        going: _Going,
+        found: tuple[Place, float],
+        onward: _Going,
+    ) -> bool:
+        """Whether another branch of equilibria crosses between two places, so that no slopes tell
+        them from it, and this one goes on in a straight line."""
+        if step > tolerances.CROSSING_STEP:
+            return False
+        off = self._y(*found) - self._y(place, gone)
+        length = sqrt(float(summed(off * off)))
+        off = off - length * going.tangent
+        bent = onward.tangent - going.tangent
+        straight = sqrt(float(max(summed(off * off) / (length * length), summed(bent * bent))))
+        if straight > tolerances.CROSSING_BEND:
+            return False
+        self.branch.crossings.append(self._words(place, gone))
+        return True
+
+    def _words(self, place: Place, gone: float) -> str:
+        """Where a place is, as messages tell it."""
         session, motion = self.branch.session, self.branch.session.problem.motion
         problem = session.problem
         inputs = self.start.inputs + self.direction * gone
@@ -371,12 +520,18 @@ class _Arc:
                 time = float(self.branch.times[self.row]) + self.pace * gone
                 shown = float(problem.units.from_si(time, TIME))
                 at.insert(0, f"time = {shown:.12g} {problem.units.label(TIME)}")
+        return ", ".join(at)
+
+    def _fold(self, place: Place, gone: float) -> End:
+        """That the branch turns back at a place, and where."""
         text = (
             f"the branch of equilibria turns back between rows {self.row + 1} and {self.to + 1}: "
             "the mechanism snaps through"
         )
         hint = "end the sweep before it, or start on the other branch with assembly: {near: ...}"
-        found = Diagnostic("snaps-through", "error", text, None, f"at {', '.join(at)}", hint=hint)
+        found = Diagnostic(
+            "snaps-through", "error", text, None, f"at {self._words(place, gone)}", hint=hint
+        )
         return Status.snapped_through, found
 
     def _at(self, y: Floats) -> tuple[Floats, float]:
@@ -402,8 +557,8 @@ class _Arc:
             return None
         return found.forces[:, -1], (found.forces[:, :-1:2] - found.forces[:, 1:-1:2]) / (2.0 * h)
 
-    def _tangent(self, place: Place, gone: float, before: Floats | None) -> Floats | None:
-        """The direction (free + 1,) of the branch at a place, onward from the one before."""
+    def _going(self, place: Place, gone: float, before: Floats | None) -> _Going | None:
+        """How the branch goes on at a place, onward from the direction before."""
         found = self._slopes(place, gone)
         if found is None:
             return None
@@ -416,7 +571,7 @@ class _Arc:
             return None
         tangent = np.array(solved)
         size = sqrt(float(summed(tangent * tangent)))
-        return tangent / size if np.isfinite(size) and size > 0.0 else None
+        return _Going(tangent / size, slopes) if np.isfinite(size) and size > 0.0 else None
 
     def _corrected(
         self, place: Place, gone: float, tangent: Floats, step: float, ends: bool
@@ -460,6 +615,18 @@ class _Arc:
 def _least(matrix: Floats) -> float:
     """The least eigenvalue of the symmetric part of a stiffness."""
     return float(eigen(0.5 * (matrix + matrix.T))[0][0])
+
+
+def _change(one: Floats, other: Floats) -> float:
+    """The largest sum of a row of one^-1 (other - one), which bounds its spectral radius; infinite
+    where `one` is singular."""
+    columns = []
+    for k in range(len(one)):
+        solved = eliminated(one.tolist(), (other[:, k] - one[:, k]).tolist(), 0.0)
+        if solved is None:
+            return np.inf
+        columns.append(np.abs(solved))
+    return float(np.max(summed(np.array(columns))))
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats | None:

@@ -141,8 +141,31 @@ LEAST_REST_WAY: Final = 1e-3
 """A way of the inputs from row to row is counted as at least this long beside the coordinates at
 rest, as where time alone goes on."""
 
+SHORT_REST: Final = 0.05
+"""Steps of coordinates at rest from row to row below this, rad or length units, need no rates of
+the branch where they change slowly."""
+
+SLOW_REST: Final = 0.1
+"""Steps that differ from those before by less than this part of them change slowly. On the way into
+a fold, as the root of what is left, they grow by a tenth five rows before it."""
+
+LONG_REST: Final = 0.2
+"""From one row to the next the branch may bend more than once beyond this, rad or length units: it
+is followed by its arclength."""
+
+JOINED_REST: Final = 0.05
+"""A step differs from the mean of the rates at its ends by the third power of its length; another
+branch beside it has other rates or lies elsewhere."""
+
 MOST_ARCS: Final = 400
 """Steps by arclength from one row to the next: a bend takes a dozen."""
+
+CROSSING_STEP: Final = 1e-3
+"""A step by arclength this short, rad or length units, may go straight across another branch."""
+
+CROSSING_BEND: Final = 1e-4
+"""A branch that bends by less in such a step crosses the other: of two that miss each other by e it
+is (2 e / step)^2, so that those nearer than 5e-6 count as crossing."""
 
 LEAST_ARC: Final = 1e-9
 """Shortest step by arclength: below, branches that meet are not told apart."""
