@@ -119,8 +119,8 @@ def test_a_base_that_moves_inside_a_loop(name: str) -> None:
     assert told.values[:, 0].imag == pytest.approx(np.zeros(3), abs=1e-12)
     # the state is the coordinate itself, and not what the chart makes of it
     s = v.state_space(["S.s"], [name])
-    assert s.C == pytest.approx(np.array([[1.0, 0, 0, 0]]), abs=1e-9)
-    assert s.D == pytest.approx(np.zeros((1, 1)), abs=1e-9)
+    assert pytest.approx(np.array([[1.0, 0, 0, 0]]), abs=1e-9) == s.C
+    assert pytest.approx(np.zeros((1, 1)), abs=1e-9) == s.D
     slope = slopes[0 if name == "A.theta" else 1]
     held = -s.A[2, 1] / s.A[2, 0]
     assert held == pytest.approx(slope, rel=1e-7)
