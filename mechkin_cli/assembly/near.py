@@ -16,7 +16,7 @@ most n times the root of the sum of both squares.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf, sqrt
+from math import inf, pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,20 +45,38 @@ def far_notes(session: Session, inputs: Floats, state: Floats) -> list[Diagnosti
     problem = session.problem
     coordinates, _ = probe_of(session).read(inputs, state[:, None])
     places = {name: float(coordinates[name][0]) for name in problem.assembly.near}
+    motion = problem.motion
+    whole = {item.name: float(session.inputs.whole[k, 0]) for k, item in enumerate(motion.inputs)}
     far = []
     for name, target in problem.assembly.near.items():
         if abs(_miss(problem, name, places[name], target)) > tolerances.NEAR_FAR:
             dimension = dimension_of(name.rpartition(".")[2])
-            value = float(problem.units.from_si(places[name], dimension))
+            # inputs are told with their whole turns, as the row shows them
+            place = places[name] + 2.0 * pi * whole.get(name, 0.0)
+            value = float(problem.units.from_si(place, dimension))
             far.append(Number(name, value, problem.units.label(dimension)))
     if not far:
         return []
+    told = ", ".join(f"{n.name} = {n.value:.6g}" for n in far)
+    resting = () if motion.rest is None else [motion.inputs[k].name for k in motion.rest.inputs]
+    if all(one.name in resting for one in far):
+        return [
+            Diagnostic(
+                "nearest-far",
+                "warning",
+                "no equilibrium was found near what near names",
+                measured=f"that of the first row has {told}",
+                limit=f"{tolerances.NEAR_FAR:g} rad or sizes",
+                hint="equilibria: {NAME: {window: {...}}} finds all in a window",
+                numbers=tuple(far),
+            )
+        ]
     return [
         Diagnostic(
             "nearest-far",
             "warning",
             "no assembly was found near what near names",
-            measured=f"the nearest has {', '.join(f'{n.name} = {n.value:.6g}' for n in far)}",
+            measured=f"the nearest has {told}",
             limit=f"{tolerances.NEAR_FAR:g} rad or sizes",
             hint="see mechkin modes for the assemblies at the first row",
             numbers=tuple(far),

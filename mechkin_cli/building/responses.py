@@ -11,7 +11,7 @@ that are followed; and the idle freedoms of a built problem.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import isfinite
+from math import isfinite, pi
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -174,6 +174,13 @@ def _window(
     if fields.error_count == errors and not high > low:
         text = "this window is empty: its end is not above its beginning"
         fields.error("empty-window", (*path, "to"), text, "give from: the least value")
+    turns = (high - low) / (2.0 * pi)
+    if fields.error_count == errors and is_angle(coordinate):
+        most = tolerances.MOST_WINDOW_TURNS
+        if turns > most:
+            text = f"this window is too wide: it has {turns:.4g} turns (limit {most})"
+            hint = "one turn has all places, but for springs on angles, which count turns"
+            fields.error("wide-window", (*path, "to"), text, hint)
     return low, high
 
 

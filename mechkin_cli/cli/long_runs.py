@@ -73,7 +73,8 @@ def streamed_runs(model: Model, command: AnalyzeCommand) -> list[str]:
     if command.summary_only:
         if needing:
             raise UsageError(f"--summary-only keeps no rows, and {needing[0]} needs them")
-        return _wanted_runs(model, command)
+        # equilibria are found at once, and are few
+        return [run for run in _wanted_runs(model, command) if not _rests(model, run)]
     if needing or not command.asked_formats:
         return []
     return [run for run in _wanted_runs(model, command) if _is_long(model, run, command)]
@@ -87,8 +88,14 @@ def _wanted_runs(model: Model, command: AnalyzeCommand) -> list[str]:
     return [run for run in model.runs if run in wanted]
 
 
+def _rests(model: Model, run: str) -> bool:
+    return run != SWEEP and model.design.response(run).search is not None
+
+
 def _is_long(model: Model, run: str, command: AnalyzeCommand) -> bool:
     """Whether the rows of a run are many, and may be taken block by block."""
+    if _rests(model, run):
+        return False
     if run != SWEEP:
         rows = model.design.response(run).rows
         return rows > LONG_RUN and stream_run(model, run, None, 1, [], None, 0, 0).in_blocks

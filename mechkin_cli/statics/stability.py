@@ -18,7 +18,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.forces import FreePlace, summed
+from mechkin_cli.statics.forces import Forces, FreePlace, summed
 from mechkin_cli.statics.newton import Balancing, Search, search
 from mechkin_cli.statics.places import eigen
 
@@ -73,6 +73,8 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
         assert creeping is not None
         least = float(np.min(creeping[0]))
     stability = Stability.MARGINAL
+    if not unsymmetric and abs(least) > error:
+        error = max(error, _fold_stiffness(forces, place, direction, size))
     if least > error:
         stability = Stability.STABLE
     elif least < -error:
@@ -87,6 +89,22 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
     length = forces.session.layout.length
     by_coordinates = nothing if named is None else length * length * float(eigen(named)[0][0])
     return Verdict(stability, coordinates, by_coordinates, along, frequency, size, unsymmetric)
+
+
+def _fold_stiffness(forces: Forces, place: FreePlace, direction: Floats, size: float) -> float:
+    """The stiffness up to which a place is not told from a fold.
+
+    Along a direction the force is k u + c u^2 / 2 about the place: it vanishes again at -2 k / c,
+    and between both it comes to k^2 / (2 c). Where that balances to rounding, the place may be
+    where k is zero.
+    """
+    step = tolerances.NEWTON_DIFFERENCE
+    beside = forces.at(place, direction[:, None] * np.array([-step, 0.0, step]))
+    if not beside.good.all():
+        return 0.0
+    before, here, behind = (float(summed(direction * beside.forces[:, k])) for k in range(3))
+    bend = abs(before - 2.0 * here + behind) / (step * step)
+    return sqrt(2.0 * bend * tolerances.EQUILIBRIUM_BALANCE * size)
 
 
 def _in_coordinates(matrix: Floats, rates: Floats) -> Floats | None:

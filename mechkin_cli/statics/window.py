@@ -19,10 +19,11 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel import functions
-from mechkin_cli.mechanism import Limit
+from mechkin_cli.mechanism import Limit, is_angle
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
-from mechkin_cli.search import all_assemblies, pose_number
+from mechkin_cli.search import all_assemblies, pose_keys, pose_number, same_poses
 from mechkin_cli.session import input_number, input_text, input_unit, turn_of
+from mechkin_cli.statics.indifference import Motions, Part
 from mechkin_cli.statics.newton import (
     Balancing,
     Search,
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from mechkin_cli.response import Prepared
     from mechkin_cli.session import Ending
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.statics.forces import FreePlace
 
 
 def in_window(one: Prepared) -> EquilibriumResult:
@@ -57,11 +59,16 @@ def in_window(one: Prepared) -> EquilibriumResult:
         notes = curve.notes(response)
     else:
         notes = _from_starts(response, balancing, statics, known)
+    notes = [*notes, *known.notes(response)]
     judgements = [(found, judged(balancing, found)) for found in known.found]
     judgements.sort(key=lambda pair: pair[1].coordinates.tolist())
     if not judgements:
         notes = [*notes, _none(response)]
     return EquilibriumResult(response, balancing, start, judgements, notes)
+
+
+MOST_SPANS = 4
+"""Parts of a window in which the loads balance all along that are told one by one."""
 
 
 @dataclass
@@ -71,6 +78,7 @@ class Known:
     balancing: Balancing
     window: tuple[Limit, ...]
     found: list[Search] = field(default_factory=list)
+    is_folded: bool = False
     _counted: int = 0
     _excess: int = 0
 
@@ -98,42 +106,79 @@ class Known:
         inside = self._within(one)
         if inside is None:
             return False
-        states = [other.place.state for other in self.found]
-        if states:
+        if self.found:
             layout, limit = self.balancing.chosen.layout, tolerances.SAME_EQUILIBRIUM
-            if pose_number(layout, np.stack(states, axis=1), one.place.state, limit) is not None:
-                return False
+            poses = np.stack([other.place.state for other in self.found], axis=1)
+            same = same_poses(
+                pose_keys(layout, poses), pose_keys(layout, inside.place.state[:, None]), limit
+            )[:, 0]
+            # the same pose some turns further, where other loads balance, is another equilibrium
+            at = self._values(inside)
+            for k in np.flatnonzero(same):
+                if not np.rint((self._values(self.found[k]) - at) / (2.0 * np.pi)).any():
+                    return False
         self.found.append(inside)
         return True
 
+    def _values(self, one: Search) -> Floats:
+        return self.balancing.named(one.place)[0]
+
     def _within(self, one: Search) -> Search | None:
-        """An equilibrium with its angles turned into the window; None outside."""
+        """An equilibrium whose angles are turned down to the least values in the window, as far as
+        the loads and their slopes are the same there; None outside."""
         session, (low, high) = self.balancing.chosen, self.ends
-        values, _ = self.balancing.named(one.place)
-        slack = tolerances.SAME_EQUILIBRIUM
-        inputs = session.problem.motion.inputs[: values.size]
-        cyclic = np.array([turn_of(session.problem, item) is not None for item in inputs])
-        turns = np.where(cyclic, np.ceil((low - slack - values) / (2.0 * np.pi)), 0.0)
-        at = values + 2.0 * np.pi * turns
-        if not ((at >= low - slack) & (at <= high + slack)).all():
+        values, slack = self._values(one).copy(), tolerances.SAME_EQUILIBRIUM
+        place, here = one.place, None
+        for k, item in enumerate(session.problem.motion.inputs[: values.size]):
+            turns = float(np.ceil((low[k] - slack - values[k]) / (2.0 * np.pi)))
+            if turns == 0.0 or turn_of(session.problem, item) is None:
+                continue
+            if here is None:
+                here = slopes(self.balancing.forces, place)
+            moved = self._turned(place, k, turns)
+            there = slopes(self.balancing.forces, moved)
+            # a spring on an angle counts its turns: a turn further loads may not balance
+            if here is None or there is None or not _are_same(here, there, one.largest):
+                continue
+            if values[k] <= high[k] + slack and values[k] >= low[k] - slack:
+                wide = high[k] - low[k] > 2.0 * np.pi + slack
+                self.is_folded = self.is_folded or bool(wide)
+            place = moved
+            values[k] += 2.0 * np.pi * turns
+        if not ((values >= low - slack) & (values <= high + slack)).all():
             return None
-        if not turns.any():
-            return one
-        state, slots = one.place.state.copy(), one.place.turns.copy()
-        known = session.problem.quantities()
-        for item, (edge, freedom), turn in zip(inputs, session.graph.inputs, turns, strict=False):
-            if session.layout.joint_reference[item.joint] >= 0:
-                state[session.layout.state(edge, freedom)] += 2.0 * np.pi * turn
-            elif (slot := session.structure.turn_slot(known[item.name])) is not None:
-                slots[slot] += 2.0 * np.pi * turn
-        place = one.place._replace(state=state, turns=slots)
-        # a spring on an angle counts its turns: a turn further loads may not balance
-        found = self.balancing.forces.at(place, np.zeros((values.size, 1)))
-        left = float(np.max(np.abs(found.forces)))
-        if not (found.good.all() and left <= tolerances.TURNED_BALANCE * one.largest):
-            as_found = (values >= low - slack) & (values <= high + slack)
-            return one if as_found.all() else None
         return one._replace(place=place)
+
+    def _turned(self, place: FreePlace, number: int, turns: float) -> FreePlace:
+        """A place with one of the window's angles some whole turns further."""
+        session = self.balancing.chosen
+        item, (edge, freedom) = session.problem.motion.inputs[number], session.graph.inputs[number]
+        state, slots = place.state.copy(), place.turns.copy()
+        if session.layout.joint_reference[item.joint] >= 0:
+            state[session.layout.state(edge, freedom)] += 2.0 * np.pi * turns
+        else:
+            slot = session.structure.turn_slot(session.problem.quantities()[item.name])
+            if slot is not None:
+                slots[slot] += 2.0 * np.pi * turns
+        return place._replace(state=state, turns=slots)
+
+    def notes(self, response: ResponseProblem) -> list[Diagnostic]:
+        """That whole turns were left out."""
+        if not self.is_folded:
+            return []
+        text = (
+            "equilibria that whole turns alone tell apart, at which the loads are the same, are "
+            "one row, at the least angle in the window"
+        )
+        return [Diagnostic("window-turns", "note", text, response.place)]
+
+
+def _are_same(one: tuple[Floats, Floats], other: tuple[Floats, Floats], largest: float) -> bool:
+    """Whether forces and their slopes are the same at two places."""
+    forces = float(np.max(np.abs(one[0] - other[0])))
+    matrices = float(np.max(np.abs(one[1] - other[1])))
+    size = max(largest, float(np.max(np.abs(one[1]))))
+    return max(forces, matrices) <= tolerances.TURNED_BALANCE * size
 
 
 class _Stretch(NamedTuple):
@@ -156,11 +201,14 @@ class _Curve:
         self.balancing, self.statics, self.known = balancing, statics, known
         self.time = balancing.forces.driven.time
         (low,), (high,) = known.ends
-        self.values = np.linspace(low, high, tolerances.WINDOW_PLACES + 1)
+        turns = 1
+        if is_angle(balancing.coordinates[0][1]):
+            turns = max(1, int(np.ceil((high - low) / (2.0 * np.pi) - tolerances.SAME_EQUILIBRIUM)))
+        self.values = np.linspace(low, high, turns * tolerances.WINDOW_PLACES + 1)
         self.base = statics.session.inputs.values[:, 0]
         self.lost: list[float] = []
         self.at_dead_centres: list[float] = []
-        self.indifferent: list[tuple[Floats, Floats]] = []
+        self.motions = Motions(statics, self._inputs)
         self.incomplete = 0.0
         self.largest = 0.0
 
@@ -179,6 +227,7 @@ class _Curve:
                 self._look_along(one)
             self._look_across([one for one in ways if not one.is_whole])
             before = after
+        self._settle_motions()
 
     def _inputs(self, values: Floats) -> Floats:
         inputs = np.repeat(self.base[:, None], values.size, axis=1)
@@ -229,19 +278,20 @@ class _Curve:
     def _look_along(self, one: _Stretch) -> None:
         """Zeros of the force along a stretch."""
         forces, values = one.forces, one.values
-        zero = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * self.largest
-        if self._is_indifferent(one, zero):
-            return
+        zero = self._is_zero(forces)
+        taken = self._take_motions(one, zero)
         for k in range(forces.size - 1):
+            if taken[k]:
+                continue
             if zero[k]:
                 self._search(self._place(one, k), values[max(k - 1, 0)], values[k + 1])
             elif forces[k] * forces[k + 1] < 0.0 and not zero[k + 1]:
                 self._between(one, k)
-        if forces.size and zero[-1]:
+        if forces.size and zero[-1] and not taken[-1]:
             self._search(self._place(one, forces.size - 1), values[-2:][0], values[-1])
         for k in range(1, forces.size - 1):
             a, b, c = forces[k - 1 : k + 2]
-            if a * b <= 0.0 or b * c <= 0.0 or abs(b) > min(abs(a), abs(c)):
+            if taken[k] or a * b <= 0.0 or b * c <= 0.0 or abs(b) > min(abs(a), abs(c)):
                 continue
             # the least of a parabola through three samples: near zero, or beyond it
             bend, slope = a - 2.0 * b + c, 0.5 * (c - a)
@@ -249,24 +299,77 @@ class _Curve:
             if least * b <= abs(b) * tolerances.TOUCHING * abs(b):
                 self._search(self._place(one, k), values[k - 1], values[k + 1])
 
-    def _is_indifferent(self, one: _Stretch, zero: Bools) -> bool:
-        """Whether the loads balance all along the stretch, or a part of it; then the first place of
-        it is taken."""
-        both = zero[:-1] & zero[1:]
-        if not both.any():
-            return False
-        k = int(np.argmax(both))
-        last = k + int(np.argmin(np.append(zero[k:], False)))
-        part = slice(k, last)
-        known = any(
-            pose_number(self.statics.session.layout, states, one.states[:, k]) is not None
-            for _, states in self.indifferent
-        )
-        self.indifferent.append((one.values[part], one.states[:, part]))
-        found = None if known else self._found(self._place(one, k))
-        if found is not None:
-            self.known.add(found)
-        return bool(zero.all())
+    def _take_motions(self, one: _Stretch, zero: Bools) -> Bools:
+        """Takes the parts of a stretch along which the loads balance; which places these are."""
+        taken = np.zeros(zero.size, dtype=bool)
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], zero, [False]]).astype(np.int8)))
+        for first, behind in edges.reshape(-1, 2).tolist():
+            if behind - first < 2:
+                continue
+            part = slice(first, behind)
+            taken[part] = True
+            begin, end = float(one.values[first]), float(one.values[behind - 1])
+            centre = None
+            if first > 0:
+                begin = self._edge(one, first, first - 1)
+            if behind < zero.size:
+                end = self._edge(one, behind - 1, behind)
+            elif one.ending is not None and one.ending.is_dead_centre:
+                end = float(one.ending.inputs[self.statics.free[0]])
+                centre = one.ending.state
+            self.motions.add(
+                Part(
+                    one.values[part],
+                    one.states[:, part],
+                    one.turns[:, part],
+                    min(begin, end),
+                    max(begin, end),
+                    centre,
+                )
+            )
+        return taken
+
+    def _edge(self, one: _Stretch, inside: int, outside: int) -> float:
+        """The value, between a sample at which the loads balance and one at which they do not, up
+        to which they do."""
+        place = self._place(one, inside)
+        still, not_now = float(one.values[inside]), float(one.values[outside])
+        for _ in range(tolerances.MOST_HALVINGS):
+            middle = 0.5 * (still + not_now)
+            way = self.statics.way(self._inputs(np.array([one.values[inside], middle])), place)
+            if way.reached < 2:
+                break
+            found = self.statics.forces(
+                self._inputs(np.array([middle])),
+                way.states[:, 1:],
+                way.turns[:, 1:],
+                np.array([self.time]),
+            )
+            if found.good.all() and self._is_zero(found.forces)[0, 0]:
+                still = middle
+            else:
+                not_now = middle
+        return still
+
+    def _is_zero(self, forces: Floats) -> Bools:
+        zero: Bools = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * self.largest
+        return zero
+
+    def _settle_motions(self) -> None:
+        """One equilibrium for each motion along which the loads balance, in place of all that were
+        found on it."""
+        starts = self.motions.starts
+        if not starts:
+            return
+        self.known.found = [
+            one
+            for one in self.known.found
+            if not self.motions.has(self.balancing.uncharted(self.statics, one.place))
+        ]
+        for place in starts:
+            found = self._found(place)
+            if found is not None:
+                self.known.add(found)
 
     def _between(self, one: _Stretch, k: int) -> None:
         """The zero between two samples: by Newton from the secant, else by halving."""
@@ -364,10 +467,12 @@ class _Curve:
             )
             hint = "name another coordinate in window:, which moves there"
             notes.append(Diagnostic("at-dead-centre", "warning", text, response.place, hint=hint))
-        if self.indifferent:
-            low = min(float(values.min()) for values, _ in self.indifferent)
-            high = max(float(values.max()) for values, _ in self.indifferent)
-            text = f"the loads balance all along from {words(low)} to {words(high)}"
+        spans = self.motions.spans(float(self.values[0]), float(self.values[-1]))
+        if spans:
+            told = [f"from {words(low)} to {words(high)}" for low, high in spans[:MOST_SPANS]]
+            if len(spans) > MOST_SPANS:
+                told.append(f"in {len(spans) - MOST_SPANS} more parts of the window")
+            text = f"the loads balance all along {', '.join(told)}"
             notes.append(Diagnostic("indifferent", "note", text, response.place))
         if self.lost:
             text = "a branch of the mechanism could not be followed through the window"

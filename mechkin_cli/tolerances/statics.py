@@ -64,8 +64,11 @@ SAME_EQUILIBRIUM: Final = 1e-6
 found to the cube root of rounding, 1e-5 of their curvature's reach."""
 
 WINDOW_PLACES: Final = 48
-"""Values of the coordinate of a window, evenly spread, at which all assemblies are looked for: a
-circuit of the mechanism that lies between two of them is missed."""
+"""Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for: a
+circuit of the mechanism that lies within one of them is missed."""
+
+MOST_WINDOW_TURNS: Final = 100
+"""Turns of a window: each takes a hundredth of a second of an arm, and some tenths of a loop."""
 
 WINDOW_SAMPLES: Final = 16
 """Places of a branch between two values of the window, at which forces are taken: two equilibria

@@ -59,8 +59,6 @@ def freed(
         session, driven, own = _of_sweep(result, row, held)
         held_by = own
     forces = Forces(session, driven)
-    if not forces.freedoms:
-        raise UsageError("nothing is free to move: all inputs are held")
     place = _place(forces, result, row)
     names = own if coordinates is None else list(coordinates)
     return Freed(
@@ -99,6 +97,8 @@ def _of_sweep(result: Result, row: int, held: Sequence[str]) -> tuple[Session, D
             raise UsageError(f"held: {name[:LONGEST_NAME]} is no input; {hint}")
     stay = [k for k, item in enumerate(motion.inputs) if item.name in held]
     free = [item for item in motion.inputs if item.name not in held]
+    if not free:
+        raise UsageError("nothing is free to move: all inputs are held; leave one out of held")
     own = _without_friction(session.problem)
     kept = motion._replace(
         inputs=tuple(motion.inputs[k] for k in stay),

@@ -170,9 +170,9 @@ class Vibration(Listed):
         Raises:
             UsageError: it is no such quantity, or some mode has no stiffness.
         """
+        # refuses what no force acts along, as a rate
+        self._load(quantity)
         by_place = self._small.gradient(self._reader([quantity]))
-        if len(by_place) != 1:
-            raise UsageError(f"{quantity} is a vector; name one of its components")
         moved = times(by_place, solved(self.stiffness, by_place.T))[0, 0]
         if not np.isfinite(moved):
             raise UsageError("some mode has no stiffness")
@@ -249,6 +249,8 @@ class Vibration(Listed):
         """
         outputs = [outputs] if isinstance(outputs, str) else list(outputs)
         told = np.array(frequencies, dtype=np.float64).reshape(-1)
+        if not (np.isfinite(told) & (told >= 0.0)).all():
+            raise UsageError("frequencies: expected finite numbers of Hz, 0 or more")
         omega = 2.0 * pi * told
         by_place, by_rate, by_second = self._small.derivatives(self._reader(outputs))
         own: tuple[Floats, Floats, Floats]

@@ -202,6 +202,46 @@ def test_an_inverted_pendulum_on_a_spring_forks(push: float) -> None:
     assert r["row.event"].tolist() == ["stable", "unstable", "stable"]
 
 
+FOLDS = {
+    # m g l sin(theta) comes to its largest value; (theta - 0.3)^2 only touches zero
+    "largest": ({"effort": 2 * G * 0.25}, 90.0, 3e-5),
+    "touching": ({"value": "-1 N*m/rad^2*(A.theta-0.3 rad)^2"}, degrees(0.3), 1e-5),
+}
+
+
+@pytest.mark.parametrize("name", FOLDS)
+def test_a_fold_is_marginal(name: str) -> None:
+    own, wanted, off = FOLDS[name]
+    if "effort" in own:
+        efforts = {"A.theta": own["effort"]}
+        m = mk.load(PENDULUM | {"equilibria": {"it": {"efforts": efforts}}})
+        r = m.equilibrium("it")
+    else:
+        loads = [{"type": "torque", "joint": "A", "value": own["value"]}]
+        r = mk.load(PENDULUM | {"loads": loads}).equilibrium(window={"A.theta": (-90, 90)})
+    assert r["A.theta"] == pytest.approx([wanted], abs=off)
+    assert r["row.event"].tolist() == ["marginal along A.theta"]
+
+
+@pytest.mark.parametrize("part", [1e-8, 1e-10])
+def test_places_beside_a_fold_are_no_fold(part: float) -> None:
+    """m g l sin(theta) = (1 - part) m g l on both sides of its largest value: the stiffness is
+    m g l cos(theta)."""
+    largest = 2 * G * 0.25
+    sides = {
+        name: {"near": {"A.theta": near}, "efforts": {"A.theta": largest * (1 - part)}}
+        for name, near in (("below", 80), ("above", 100))
+    }
+    m = mk.load(PENDULUM | {"equilibria": sides})
+    found = {name: m.equilibrium(name) for name in sides}
+    beside = sqrt(2 * part)
+    for name, sign in (("below", 1), ("above", -1)):
+        r = found[name]
+        assert radians(r["A.theta"][0] - 90) == pytest.approx(-sign * beside, rel=1e-2)
+        assert r["row.event"][0] == ("stable" if sign > 0 else "unstable")
+        assert r["row.least_stiffness"][0] == pytest.approx(sign * largest * beside, rel=1e-2)
+
+
 def _energy(angle: float, branch: float) -> float:
     """V (N*mm) of the four-bar, written anew from its circles; angle of the crank from its drawing
     in rad."""

@@ -202,3 +202,33 @@ def test_a_platform_on_six_springs() -> None:
 def test_actuators_do_not_go_with_what_rests() -> None:
     with pytest.raises(mk.InvalidFile, match="actuators"):
         mk.loads(LEVER + MOTION + "actuators: [A.theta, E.theta]\n")
+
+
+@pytest.mark.parametrize("turn", [0, 360])
+def test_an_equilibrium_far_from_where_near_starts_is_told_as_its_row_is(turn: int) -> None:
+    """The spring holds the arm half a turn from where the search starts."""
+    file = {
+        "format": 1,
+        "plane": "xy",
+        "links": {"base": {}, "arm": {}},
+        "joints": {
+            "A": {"type": "R", "links": ["ground", "base"], "point": [0, 0]},
+            "B": {"type": "R", "links": ["base", "arm"], "point": [1, 0]},
+        },
+        "loads": [
+            {
+                "type": "spring",
+                "joint": "B",
+                "coordinate": "theta",
+                "stiffness": 1,
+                "free": f"{turn + 200} deg",
+            }
+        ],
+        "assembly": {"near": {"B.theta": turn + 20}},
+        "motion": {"inputs": {"A.theta": {"from": 0, "to": 10, "count": 3}}, "rest": ["B.theta"]},
+    }
+    r = mk.load(file).analyze(["B.theta"])
+    assert r["B.theta"] == pytest.approx(turn + 200, abs=1e-9)
+    (note,) = (note for note in r.diagnostics if note.code == "nearest-far")
+    assert "equilibrium" in note.message
+    assert note.numbers[0].value == pytest.approx(r["B.theta"][0], abs=1e-9)

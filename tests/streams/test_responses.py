@@ -233,3 +233,17 @@ def test_a_response_is_summed_up_alone(
     assert {file.name for file in (tmp_path / "o").iterdir()} == {"t.summary.csv", ".mechkin-files"}
     summary = (tmp_path / "o" / "t.summary.csv").read_bytes()
     assert summary == (tmp_path / "whole" / "t.summary.csv").read_bytes()
+
+
+def test_equilibria_are_written_beside_what_is_summed_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = TEXTS["to the end"].replace(
+        "tables: [", "tables: [{name: low, run: low, columns: [O.theta, row.event]}, "
+    )
+    path = tmp_path / "f.yaml"
+    path.write_text(text + "equilibria: {low: {near: {O.theta: 0.2}}}\n")
+    run(monkeypatch, str(path), "--summary-only", "--out", str(tmp_path / "o"))
+    assert "low" in capsys.readouterr().out
+    names = {file.name for file in (tmp_path / "o").iterdir()}
+    assert names == {"t.summary.csv", "low.csv", "low.rows.csv", ".mechkin-files"}

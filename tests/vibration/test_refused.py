@@ -11,6 +11,8 @@ from mechkin_cli.diagnostics import UsageError
 
 ENGINE = Path(__file__).parents[2] / "mechanisms" / "vibration" / "engine_mounts.yaml"
 
+ALL = [f"pose.{name}" for name in ("rx", "ry", "rz", "x", "y", "z")]
+
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
@@ -20,6 +22,7 @@ ENGINE = Path(__file__).parents[2] / "mechanisms" / "vibration" / "engine_mounts
         ({"coordinates": ["pose.x"]}, "6 freedoms"),
         ({"coordinates": ["sump"]}, "no coordinate"),
         ({"held": ["pose.u"]}, "no input"),
+        ({"held": ALL}, "all inputs are held"),
     ],
 )
 def test_what_is_refused(arguments: dict, words: str) -> None:
@@ -36,6 +39,20 @@ def test_what_inputs_and_outputs_are_refused() -> None:
         v.state_space(["pose.x"], ["row.condition"])
     with pytest.raises(UsageError, match="no parameter"):
         v.sensitivity("stiff")
+
+
+def test_an_effective_stiffness_is_of_what_a_force_moves() -> None:
+    v = mk.load(ENGINE).vibration(row=2)
+    for quantity in ("pose.x_dot", "sump.velocity.x", "sump.position", "row.condition"):
+        with pytest.raises(UsageError):
+            v.effective_stiffness(quantity)
+
+
+@pytest.mark.parametrize("frequency", [-1.0, float("nan"), float("inf")])
+def test_frequencies_of_a_response_are_numbers_of_hertz(frequency: float) -> None:
+    v = mk.load(ENGINE).vibration(row=2)
+    with pytest.raises(UsageError, match="Hz, 0 or more"):
+        v.response([1.0, frequency], "pose.x", ["pose.x"])
 
 
 def test_no_inertia_is_told() -> None:

@@ -1,0 +1,132 @@
+"""Motions along which the loads balance, in a window of one coordinate.
+
+A window is looked through in parts, and a motion may turn back at a dead centre and come again a
+turn later. Parts that share a place belong to one motion, which is one row.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.search import pose_number
+from mechkin_cli.statics.places import Place
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from mechkin_cli.show import Floats
+    from mechkin_cli.statics.places import Statics
+
+
+class Part(NamedTuple):
+    """Neighbouring places of a branch at all of which the loads balance: values of the coordinate
+    (places,), states and turns; the least and the largest value at which they do; and the state of
+    the dead centre that it ends at."""
+
+    values: Floats
+    states: Floats
+    turns: Floats
+    low: float
+    high: float
+    dead_centre: Floats | None
+
+
+class Motions:
+    """The motions along which the loads balance.
+
+    Args:
+        statics: of one free coordinate.
+        inputs: (inputs, places) at values of it.
+    """
+
+    def __init__(self, statics: Statics, inputs: Callable[[Floats], Floats]) -> None:
+        self.statics, self._inputs = statics, inputs
+        self._parts: list[Part] = []
+        self._motion: list[int] = []
+        self._starts: dict[int, Place] = {}
+        self._spans: list[tuple[float, float]] = []
+
+    def add(self, part: Part) -> None:
+        """Takes a part, which belongs to a motion that is known or begins another."""
+        self._spans.append((part.low, part.high))
+        start = self._place(part, 0)
+        first = self._holding(start)
+        last = self._holding(self._place(part, part.values.size - 1))
+        meets = {self._motion[k] for k in (*first, *last)}
+        for number, other in enumerate(self._parts):
+            if self._motion[number] in meets:
+                continue
+            ends = (self._place(other, 0), self._place(other, other.values.size - 1))
+            if self._same_dead_centre(part.dead_centre, other.dead_centre) or any(
+                self._lies_in(part, end) for end in ends
+            ):
+                meets.add(self._motion[number])
+        motion = min(meets, default=len(self._motion))
+        self._motion = [motion if one in meets else one for one in self._motion]
+        free = self.statics.free[0]
+        for one in [self._starts.pop(k) for k in meets if k in self._starts]:
+            if one.inputs[free] < start.inputs[free]:
+                start = one
+        self._starts[motion] = start
+        if not (first and last) or part.dead_centre is not None:
+            self._parts.append(part)
+            self._motion.append(motion)
+
+    @property
+    def starts(self) -> list[Place]:
+        """A place of each motion."""
+        return [self._starts[motion] for motion in sorted(self._starts)]
+
+    def has(self, place: Place) -> bool:
+        """Whether a place lies on one of the motions."""
+        return bool(self._holding(place)) or any(
+            self._same_dead_centre(one.dead_centre, place.state) for one in self._parts
+        )
+
+    def spans(self, low: float, high: float) -> list[tuple[float, float]]:
+        """The values, between two, at which the loads balance along a motion."""
+        found: list[tuple[float, float]] = []
+        for first, last in sorted(self._spans):
+            first, last = max(first, low), min(last, high)
+            if last < first:
+                continue
+            if found and first <= found[-1][1] + tolerances.SAME_EQUILIBRIUM:
+                found[-1] = found[-1][0], max(found[-1][1], last)
+            else:
+                found.append((first, last))
+        return found
+
+    def _holding(self, place: Place) -> list[int]:
+        """The parts that have a place."""
+        return [k for k, part in enumerate(self._parts) if self._lies_in(part, place)]
+
+    def _place(self, part: Part, k: int) -> Place:
+        inputs = self._inputs(part.values[k : k + 1])[:, 0]
+        return Place(inputs, part.states[:, k], part.turns[:, k])
+
+    def _lies_in(self, part: Part, place: Place) -> bool:
+        """Whether a place, or one that is whole turns off, lies between those of a part."""
+        free, slack = self.statics.free[0], tolerances.SAME_EQUILIBRIUM
+        value = float(place.inputs[free])
+        least, most = float(part.values.min()), float(part.values.max())
+        if self.statics.cyclic[free]:
+            value += 2.0 * np.pi * float(np.ceil((least - slack - value) / (2.0 * np.pi)))
+        if not least - slack <= value <= most + slack:
+            return False
+        near = self._place(part, int(np.argmin(np.abs(part.values - value))))
+        at = min(max(value, least), most)
+        way = self.statics.way(self._inputs(np.array([near.inputs[free], at])), near)
+        if way.reached < 2:
+            return False
+        layout, limit = self.statics.session.layout, tolerances.SAME_DEAD_CENTRE
+        return pose_number(layout, way.states[:, 1:], place.state, limit) is not None
+
+    def _same_dead_centre(self, one: Floats | None, other: Floats | None) -> bool:
+        if one is None or other is None:
+            return False
+        layout, limit = self.statics.session.layout, tolerances.SAME_DEAD_CENTRE
+        return pose_number(layout, one[:, None], other, limit) is not None
