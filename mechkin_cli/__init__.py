@@ -8,7 +8,8 @@ r = m.analyze()                        an Analysis: the sweep; m.respond("NAME")
 
 Of a model
     m.parameters                       values by name in the file's units; m.parameters.unit("P1")
-    m.analyze()  m.respond()           the runs; m.analyses(): all of the file
+    m.analyze()  m.respond()           the runs; m.analyses(): all of the file; m.run_free("NAME")
+    m.equilibrium()                    where loads balance; m.vibration(): how it vibrates there
     m.stream(rows=4096)                the sweep block by block, in constant memory
     m.modes()                          the ways to assemble it
     m.ranges()                         how far an input can go: dead centres, circuits

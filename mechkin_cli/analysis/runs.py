@@ -426,6 +426,8 @@ def _asked_run(
     """A run of a model as it is asked for; arguments and errors are those of `Model.respond`."""
     design = model.design.at_responses
     problem = design.problem
+    if run not in problem.responses:
+        response_name(problem, run)  # which says what there is
     session = model.design.session_of(run)
     response = problem.responses[run]
     if mode is not None:

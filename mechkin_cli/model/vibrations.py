@@ -11,6 +11,7 @@ from mechkin_cli import view
 from mechkin_cli.analysis import Analysis, Solvable
 from mechkin_cli.arguments import a_whole_number, texts
 from mechkin_cli.expressions import parse
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import ColumnLayout, TableLayout
 from mechkin_cli.vibration import Vibration, freed, played
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis import Design
     from mechkin_cli.arguments import Setting
+    from mechkin_cli.sweep import Result
+    from mechkin_cli.vibration import Freed
 
 
 class Moving(Solvable, Protocol):
@@ -56,33 +59,53 @@ def vibration(
     held = texts("held", held, '["A.theta"]')
     a_whole_number("row", row, "", 0)
     if coordinates is not None:
-        coordinates = texts("coordinates", coordinates, '["A.theta"]')
-    name = run or _first_run(model)
-    (analysis,) = model.analyses(name)
-    units, parameters = analysis.result.units, analysis.result.problem.parameters
+        coordinates = tuple(texts("coordinates", coordinates, '["A.theta"]'))
+    return _Source(model, run or _first_run(model), row, coordinates, tuple(held)).vibration()
 
-    def again(parameter: str, factor: float) -> Vibration:
-        value = parameters[parameter]
-        own = units.from_si(factor * float(value.value), value.dimension)  # type: ignore[arg-type]
-        other = model.with_parameters({parameter: float(own)})
-        return vibration(other, name, row, coordinates, held)
 
-    place = freed(analysis.result, row, coordinates, held)
+class _Source(NamedTuple):
+    """The row of a run that small motions are about: from it they are made again."""
 
-    def shown(found: Vibration, path: str | PathLike[str] | None) -> view.Page | Path:
-        page, _ = view.view_page(list(modes(found)), modes=False)
+    model: Moving
+    run: str
+    row: int
+    coordinates: tuple[str, ...] | None
+    held: tuple[str, ...]
+
+    def vibration(self) -> Vibration:
+        """The small motions."""
+        return Vibration(self._freed(self._result()), self)
+
+    def again(self, parameter: str, factor: float) -> Vibration:
+        """Those with another value of a parameter, a `factor` of its own."""
+        result = self._result()
+        value = result.problem.parameters[parameter]
+        in_si = factor * float(value.value)  # type: ignore[arg-type]
+        own = float(result.units.from_si(in_si, value.dimension))
+        return self._replace(model=self.model.with_parameters({parameter: own})).vibration()
+
+    def shown(self, found: Vibration, path: str | PathLike[str] | None) -> view.Page | Path:
+        """A page in which the modes are played."""
+        page, _ = view.view_page(list(self._modes(found)), modes=False)
         return view.Page(page) if path is None else view.write_view(path, page)
 
-    def modes(found: Vibration) -> Iterator[Analysis]:
+    def _result(self) -> Result:
+        (analysis,) = self.model.analyses(self.run)
+        return analysis.result
+
+    def _freed(self, result: Result) -> Freed:
+        return freed(result, self.row, self.coordinates, self.held)
+
+    def _modes(self, found: Vibration) -> Iterator[Analysis]:
+        result = self._result()
+        place = self._freed(result)
         for number, (shape, frequency) in enumerate(
             zip(found.shapes.T, found.frequencies, strict=True)
         ):
             parts = np.asarray(shape.real), np.asarray(shape.imag)
-            rows = played(place, analysis.result, row, parts, float(frequency))
+            rows = played(place, result, self.row, parts, float(frequency))
             name = f"mode {number + 1}, {frequency:.4g} Hz"
-            yield Analysis(model, (_swung(name, found.coordinates),), rows, name)
-
-    return Vibration(place, again, shown)
+            yield Analysis(self.model, (_swung(name, found.coordinates),), rows, name)
 
 
 def _swung(run: str, coordinates: Sequence[str]) -> TableLayout:

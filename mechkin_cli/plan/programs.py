@@ -38,7 +38,7 @@ KINKS = (Operation.MAGNITUDE, Operation.SIGN, Operation.LARGER, Operation.SMALLE
 ORDERS = range(4)
 """Of a function: its value and its derivatives."""
 
-_NOTHING = Output(OutputCode.STATE, 0, 0, 0, (0.0, 0.0, 0.0), 1.0)
+_NOTHING = Output(OutputCode.STATE, 0, 0, 0, (0.0, 0.0, 0.0), 0.0)
 """Where no quantity of the mechanism is read."""
 
 

@@ -9,7 +9,6 @@ around a bend, or turn back before (a fold), beyond which the mechanism snaps th
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,13 +19,13 @@ from mechkin_cli.mechanism import dimension_of, eliminated
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.row_notes import RowSet
-from mechkin_cli.session import Continued, input_number, input_text, input_unit
+from mechkin_cli.session import Continued, input_unit
+from mechkin_cli.statics.arc import Arc, End
 from mechkin_cli.statics.forces import summed
 from mechkin_cli.statics.newton import Balancing, determinant, search
 from mechkin_cli.statics.places import Place, Statics, eigen
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
-from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
@@ -82,9 +81,6 @@ def _moved(session: Session, rest: Rest, values: Floats) -> Session:
 
 def _no_text() -> Precise:
     raise TraceLost("a coordinate that rests where the loads balance")
-
-
-End = tuple[Status, Diagnostic] | None
 
 
 class _Branch:
@@ -165,7 +161,7 @@ class _Branch:
             if block > 1:
                 block //= 2
                 continue
-            onward, end = _Arc(self, place, at, at + step).follow()
+            onward, end = Arc(self, place, at, at + step).follow()
             if onward is None:
                 return at, end
             place = onward
@@ -394,239 +390,9 @@ class _Branch:
 _NO_END = Status.ok, Diagnostic("", "note", "")
 
 
-class _Going(NamedTuple):
-    """The direction (free + 1,) of the branch at a place, of length one, and the slopes (free, free
-    + 1) of the forces."""
-
-    tangent: Floats
-    slopes: Floats
-
-
-class _Arc:
-    """The way from an equilibrium at a row towards the next row by the arclength of the branch, in
-    the coordinates at rest and the part of the way that the inputs have gone."""
-
-    def __init__(self, branch: _Branch, place: Place, row: int, to: int) -> None:
-        self.branch, self.statics, self.free = branch, branch.statics, branch.free
-        self.row, self.to = row, to
-        self.start = place
-        way = branch.values[:, to] - place.inputs
-        way[self.free] = 0.0
-        self.scale = max(sqrt(float(summed(way * way))), tolerances.LEAST_REST_WAY)
-        self.direction = way / self.scale
-        self.pace = float(branch.times[to] - branch.times[row]) / self.scale
-
-    def follow(self) -> tuple[Place | None, End]:
-        """The place at the next row; or None and why the branch does not come there."""
-        place, gone = self.start, 0.0
-        going = self._going(place, gone, None)
-        step = min(self.scale, tolerances.EQUILIBRIUM_REACH) / 4.0
-        for _ in range(tolerances.MOST_ARCS):
-            if going is None:
-                return None, self.branch.lost(self.row, self._words(place, gone))
-            tangent = going.tangent
-            if tangent[-1] <= 0.0:  # of the very first place
-                return None, self._fold(place, gone)
-            # the last step ends at the row itself
-            ends = tangent[-1] > 0.0 and gone + step * tangent[-1] >= self.scale
-            found = self._corrected(place, gone, tangent, step, ends)
-            if found is not None:
-                onward, there = found
-                following = self._going(onward, there, tangent)
-                if following is not None and (
-                    self._is_one(place, gone, going, found, following)
-                    or self._crosses(place, gone, step, going, found, following)
-                ):
-                    turns_back = following.tangent[-1] <= 0.0
-                    if turns_back and step <= tolerances.FOLD_STEP:
-                        return None, self._fold(place, gone)
-                    if not turns_back and ends:
-                        return onward, None
-                    if not turns_back:
-                        place, gone, going = onward, there, following
-                        step = min(2.0 * step, tolerances.EQUILIBRIUM_REACH)
-                        continue
-            step *= 0.5
-            if step < tolerances.LEAST_ARC:
-                if tangent[-1] < tolerances.NEAR_FOLD:
-                    return None, self._fold(place, gone)
-                return None, self.branch.lost(self.row, self._words(place, gone))
-        return None, self.branch.lost(self.row, self._words(place, gone))
-
-    def _is_one(
-        self, place: Place, gone: float, going: _Going, found: tuple[Place, float], onward: _Going
-    ) -> bool:
-        """Whether two places surely lie on one branch: slopes of the forces, with the direction of
-        the branch, change by less than half of what would make them singular from either end to the
-        other, and to the middle of the curve between them (as branches of positions are judged,
-        docs/numerics.md)."""
-        if float(summed(onward.tangent * going.tangent)) <= tolerances.ARC_COSINE:
-            return False
-        first, last = self._y(place, gone), self._y(*found)
-        size = sqrt(float(summed((last - first) * (last - first))))
-        middle = 0.5 * (first + last) + (size / 8.0) * (going.tangent - onward.tangent)
-        inputs, _ = self._at(middle)
-        way = self.statics.way(np.stack([place.inputs, inputs], axis=1), place)
-        if way.reached < 2:
-            return False
-        between = self._slopes(Place(inputs, way.states[:, 1], way.turns[:, 1]), float(middle[-1]))
-        if between is None:
-            return False
-        border = going.tangent + onward.tangent
-        border = border / sqrt(float(summed(border * border)))
-        begin, half, end = (
-            np.concatenate([slopes, border[None, :]])
-            for slopes in (going.slopes, between[1], onward.slopes)
-        )
-        pairs = ((begin, half), (begin, end), (end, half), (end, begin))
-        return all(_change(one, other) <= tolerances.SPECTRAL_RADIUS for one, other in pairs)
-
-    def _crosses(
-        self,
-        place: Place,
-        gone: float,
-        step: float,
-        going: _Going,
-        found: tuple[Place, float],
-        onward: _Going,
-    ) -> bool:
-        """Whether another branch of equilibria crosses between two places, so that no slopes tell
-        them from it, and this one goes on in a straight line."""
-        if step > tolerances.CROSSING_STEP:
-            return False
-        off = self._y(*found) - self._y(place, gone)
-        length = sqrt(float(summed(off * off)))
-        off = off - length * going.tangent
-        bent = onward.tangent - going.tangent
-        straight = sqrt(float(max(summed(off * off) / (length * length), summed(bent * bent))))
-        if straight > tolerances.CROSSING_BEND:
-            return False
-        self.branch.crossings.append(self._words(place, gone))
-        return True
-
-    def _words(self, place: Place, gone: float) -> str:
-        """Where a place is, as messages tell it."""
-        session, motion = self.branch.session, self.branch.session.problem.motion
-        problem = session.problem
-        inputs = self.start.inputs + self.direction * gone
-        inputs[self.free] = place.inputs[self.free]
-        at = [
-            input_text(input_number(problem, session.layout, number, float(inputs[number])))
-            for number in (motion.leading_number, *self.free)
-        ]
-        if motion.leading_number in self.free or not self.direction.any():
-            at = at[1:]
-            if motion.time is not None:
-                time = float(self.branch.times[self.row]) + self.pace * gone
-                shown = float(problem.units.from_si(time, TIME))
-                at.insert(0, f"time = {shown:.12g} {problem.units.label(TIME)}")
-        return ", ".join(at)
-
-    def _fold(self, place: Place, gone: float) -> End:
-        """That the branch turns back at a place, and where."""
-        text = (
-            f"the branch of equilibria turns back between rows {self.row + 1} and {self.to + 1}: "
-            "the mechanism snaps through"
-        )
-        hint = "end the sweep before it, or start on the other branch with assembly: {near: ...}"
-        found = Diagnostic(
-            "snaps-through", "error", text, None, f"at {self._words(place, gone)}", hint=hint
-        )
-        return Status.snapped_through, found
-
-    def _at(self, y: Floats) -> tuple[Floats, float]:
-        inputs = self.start.inputs + self.direction * y[-1]
-        inputs[self.free] = y[:-1]
-        return inputs, float(self.branch.times[self.row]) + self.pace * float(y[-1])
-
-    def _y(self, place: Place, gone: float) -> Floats:
-        return np.append(place.inputs[self.free], gone)
-
-    def _slopes(self, place: Place, gone: float) -> tuple[Floats, Floats] | None:
-        """Forces (free,) and their slopes (free, free + 1) at a place."""
-        count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
-        steps = np.zeros((place.inputs.size, 2 * count + 3))
-        times = np.full(2 * count + 3, self._at(self._y(place, gone))[1])
-        for number, k in enumerate(self.free):
-            steps[k, 2 * number], steps[k, 2 * number + 1] = h, -h
-        for sign, column in ((1.0, 2 * count), (-1.0, 2 * count + 1)):
-            steps[:, column] = sign * h * self.direction
-            times[column] += sign * h * self.pace
-        found = self.statics.beside(place, steps, times)
-        if not found.good.all():
-            return None
-        return found.forces[:, -1], (found.forces[:, :-1:2] - found.forces[:, 1:-1:2]) / (2.0 * h)
-
-    def _going(self, place: Place, gone: float, before: Floats | None) -> _Going | None:
-        """How the branch goes on at a place, onward from the direction before."""
-        found = self._slopes(place, gone)
-        if found is None:
-            return None
-        slopes = found[1]
-        count = slopes.shape[0]
-        onward = np.append(np.zeros(count), 1.0) if before is None else before
-        matrix = np.concatenate([slopes, onward[None, :]])
-        solved = eliminated(matrix.tolist(), [0.0] * count + [1.0], 0.0)
-        if solved is None:
-            return None
-        tangent = np.array(solved)
-        size = sqrt(float(summed(tangent * tangent)))
-        return _Going(tangent / size, slopes) if np.isfinite(size) and size > 0.0 else None
-
-    def _corrected(
-        self, place: Place, gone: float, tangent: Floats, step: float, ends: bool
-    ) -> tuple[Place, float] | None:
-        """The equilibrium a step onward, or the one at the next row where the way `ends`."""
-        y = self._y(place, gone) + step * tangent
-        if ends:
-            y = self._y(place, gone) + tangent * ((self.scale - gone) / tangent[-1])
-            y[-1] = self.scale
-        predicted, here = y.copy(), place
-        last = np.append(np.zeros(len(self.free)), 1.0) if ends else tangent
-        size = np.inf
-        for _ in range(tolerances.MOST_CHORDS):
-            inputs, _time = self._at(y)
-            way = self.statics.way(np.stack([here.inputs, inputs], axis=1), here)
-            if way.reached < 2:
-                return None
-            here = Place(inputs, way.states[:, 1], way.turns[:, 1])
-            if size <= tolerances.EQUILIBRIUM_STEP:
-                off = y - predicted
-                if sqrt(float(summed(off * off))) > tolerances.SMOOTH_STEP * step:
-                    return None
-                return here, float(y[-1])
-            found = self._slopes(here, float(y[-1]))
-            if found is None:
-                return None
-            forces, slopes = found
-            matrix = np.concatenate([slopes, last[None, :]])
-            beyond = float(summed(last * (y - predicted)))
-            solved = eliminated(matrix.tolist(), [*(-forces).tolist(), -beyond], 0.0)
-            if solved is None:
-                return None
-            by = np.array(solved)
-            size = sqrt(float(summed(by * by)))
-            if not size <= tolerances.EQUILIBRIUM_REACH:
-                return None
-            y = y + by
-        return None
-
-
 def _least(matrix: Floats) -> float:
     """The least eigenvalue of the symmetric part of a stiffness."""
     return float(eigen(0.5 * (matrix + matrix.T))[0][0])
-
-
-def _change(one: Floats, other: Floats) -> float:
-    """The largest sum of a row of one^-1 (other - one), which bounds its spectral radius; infinite
-    where `one` is singular."""
-    columns = []
-    for k in range(len(one)):
-        solved = eliminated(one.tolist(), (other[:, k] - one[:, k]).tolist(), 0.0)
-        if solved is None:
-            return np.inf
-        columns.append(np.abs(solved))
-    return float(np.max(summed(np.array(columns))))
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats | None:

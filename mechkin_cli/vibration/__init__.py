@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "place": "freed",
+        "place": "Freed freed",
         "playing": "PlayedMode played",
         "tables": "vibration_tables",
         "vibration": "FrequencyResponse StateSpace Vibration",

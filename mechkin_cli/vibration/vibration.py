@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -92,6 +92,22 @@ class FrequencyResponse(NamedTuple):
         return np.asarray(atan2(*parts)).reshape(self.values.shape) * (180.0 / pi)
 
 
+class Source(Protocol):
+    """What small motions are made from."""
+
+    def vibration(self) -> Vibration:
+        """The same small motions."""
+        ...
+
+    def again(self, parameter: str, factor: float) -> Vibration:
+        """Those with another value of a parameter, a factor of its own."""
+        ...
+
+    def shown(self, found: Vibration, path: str | PathLike[str] | None) -> Any:
+        """A page in which the modes are played."""
+        ...
+
+
 class Vibration(Listed):
     """Small motions about a row of a run, as `Model.vibration` gives them, in SI units.
 
@@ -105,13 +121,8 @@ class Vibration(Listed):
         driven: coordinates that drives hold or move.
     """
 
-    def __init__(
-        self,
-        freed: Freed,
-        again: Callable[[str, float], Vibration] | None = None,
-        shown: Callable[[Vibration, str | PathLike[str] | None], Any] | None = None,
-    ) -> None:
-        self._freed, self._again, self._shown = freed, again, shown
+    def __init__(self, freed: Freed, source: Source | None = None) -> None:
+        self._freed, self._source = freed, source
         self._small = freed.motions
         self.coordinates: tuple[str, ...] = freed.motions.coordinates
         self.driven: tuple[str, ...] = freed.driven
@@ -286,7 +297,7 @@ class Vibration(Listed):
         Raises:
             UsageError: there is no such parameter, it is zero, or the modes are others beside it.
         """
-        if self._again is None:
+        if self._source is None:
             raise UsageError("these small motions are not those of a model")
         known = self._freed.session.problem.parameters
         if parameter not in known:
@@ -298,7 +309,7 @@ class Vibration(Listed):
         step = tolerances.PARAMETER_STEP
         found = []
         for k in (-2, -1, 1, 2):
-            other = self._again(parameter, 1.0 + k * step).frequencies
+            other = self._source.again(parameter, 1.0 + k * step).frequencies
             if len(other) != len(self.frequencies):
                 raise UsageError(f"beside this {parameter} there are other modes")
             found.append(other)
@@ -402,8 +413,13 @@ class Vibration(Listed):
             UsageError: the page cannot be written there, or the loops do not close beside the
                 place.
         """
-        assert self._shown is not None
-        return self._shown(self, path)
+        assert self._source is not None
+        return self._source.shown(self, path)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as what it is made from."""
+        assert self._source is not None
+        return self._source.vibration, ()
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

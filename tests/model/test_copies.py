@@ -138,6 +138,7 @@ def answers() -> list[Listed]:
         model.tolerances({"P1": 0.001}, ["O4.theta"], samples=100),
         model.fit(target, {"P1": (0.4, 0.6)}, starts=1),
         model.study(study),
+        mk.load(FILE_OF["engine_mounts"]).vibration(row=2),
     ]
 
 
