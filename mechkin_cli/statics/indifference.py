@@ -50,11 +50,11 @@ class Motions:
         self._starts: dict[int, Place] = {}
         self._spans: list[tuple[float, float]] = []
 
-    def add(self, part: Part) -> None:
-        """Takes a part, which belongs to a motion that is known or begins another."""
+    def add(self, part: Part, start: Place) -> None:
+        """Takes a part, which belongs to a motion that is known or begins another; `start` is a
+        place of it."""
         self._spans.append((part.low, part.high))
-        start = self._place(part, 0)
-        first = self._holding(start)
+        first = self._holding(self._place(part, 0))
         last = self._holding(self._place(part, part.values.size - 1))
         meets = {self._motion[k] for k in (*first, *last)}
         for number, other in enumerate(self._parts):

@@ -201,16 +201,22 @@ def search(balancing: Balancing, start: FreePlace) -> Search:
         size, slope = float(np.max(np.abs(forces))), float(np.max(np.abs(matrix)))
         wanted = newton_step(matrix, forces)
         near = length <= tolerances.EQUILIBRIUM_STEP
-        if near or size <= tolerances.EQUILIBRIUM_ROUNDING * max(largest, slope):
+        balances = size <= tolerances.EQUILIBRIUM_ROUNDING * max(largest, slope)
+        before, length = length, _length(wanted)
+        # steps to a marginal place shrink slowly, and go on as long as forces become smaller
+        lingers = tolerances.LINGERING_STEP * before < length < before
+        is_last = steps == tolerances.MOST_EQUILIBRIUM_STEPS
+        if near or (balances and (is_last or not lingers)):
             return Search(place, forces, max(largest, slope), SearchEnd.FOUND, steps)
-        if steps == tolerances.MOST_EQUILIBRIUM_STEPS:
+        if is_last:
             return Search(place, forces, slope, SearchEnd.STEPS, steps)
-        length = _length(wanted)
         if tolerances.EQUILIBRIUM_REACH < length <= tolerances.WILD_STEP:
             wanted = wanted * (tolerances.EQUILIBRIUM_REACH / length)
         moved, end = None, SearchEnd.LEAST
         if length <= tolerances.WILD_STEP:
             moved, end = _moved(balancing.forces, place, wanted, forces)
+        if moved is None and balances:
+            return Search(place, forces, max(largest, slope), SearchEnd.FOUND, steps)
         if moved is None and not settled and length > tolerances.EQUILIBRIUM_STEP:
             lower = settle(balancing, place)
             settled, moved = True, None if lower is place else lower

@@ -204,7 +204,12 @@ class _Curve:
         turns = 1
         if is_angle(balancing.coordinates[0][1]):
             turns = max(1, int(np.ceil((high - low) / (2.0 * np.pi) - tolerances.SAME_EQUILIBRIUM)))
-        self.values = np.linspace(low, high, turns * tolerances.WINDOW_PLACES + 1)
+        self.values, cell = np.linspace(
+            low, high, turns * tolerances.WINDOW_PLACES + 1, retstep=True
+        )
+        # dead centres like to stand at round values, at which nothing can be followed
+        self.values += tolerances.WINDOW_SHIFT * cell
+        self.values[0] = low - tolerances.WINDOW_SHIFT * cell
         self.base = statics.session.inputs.values[:, 0]
         self.lost: list[float] = []
         self.at_dead_centres: list[float] = []
@@ -317,17 +322,32 @@ class _Curve:
             elif one.ending is not None and one.ending.is_dead_centre:
                 end = float(one.ending.inputs[self.statics.free[0]])
                 centre = one.ending.state
-            self.motions.add(
-                Part(
-                    one.values[part],
-                    one.states[:, part],
-                    one.turns[:, part],
-                    min(begin, end),
-                    max(begin, end),
-                    centre,
-                )
+            found = Part(
+                one.values[part],
+                one.states[:, part],
+                one.turns[:, part],
+                min(begin, end),
+                max(begin, end),
+                centre,
             )
+            start = self._start_within(one, first, behind - 1)
+            if start is not None:
+                self.motions.add(found, start)
         return taken
+
+    def _start_within(self, one: _Stretch, first: int, last: int) -> Place | None:
+        """The first place within the window of a part of a stretch; None where there is none."""
+        (low,), (high,) = self.known.ends
+        begin, end = float(one.values[first]), float(one.values[last])
+        at = min(max(begin, float(low)), float(high))
+        if not min(begin, end) <= at <= max(begin, end):
+            return None
+        place = self._place(one, first)
+        way = self.statics.way(self._inputs(np.array([begin, at])), place)
+        if at == begin or way.reached < 2:
+            return place
+        inputs = self._inputs(np.array([at]))[:, 0]
+        return Place(inputs, way.states[:, 1], way.turns[:, 1])
 
     def _edge(self, one: _Stretch, inside: int, outside: int) -> float:
         """The value, between a sample at which the loads balance and one at which they do not, up
@@ -467,7 +487,8 @@ class _Curve:
             )
             hint = "name another coordinate in window:, which moves there"
             notes.append(Diagnostic("at-dead-centre", "warning", text, response.place, hint=hint))
-        spans = self.motions.spans(float(self.values[0]), float(self.values[-1]))
+        (low,), (high,) = self.known.ends
+        spans = self.motions.spans(float(low), float(high))
         if spans:
             told = [f"from {words(low)} to {words(high)}" for low, high in spans[:MOST_SPANS]]
             if len(spans) > MOST_SPANS:

@@ -29,6 +29,10 @@ EQUILIBRIUM_ROUNDING: Final = 1e-14
 """Forces below this part of the largest about the place are zero to rounding: no step is left at a
 marginal place, to which Newton's steps shrink too slowly."""
 
+LINGERING_STEP: Final = 0.25
+"""Newton steps above this part of the one before go to a marginal place: they are a half at a fold,
+and two thirds at a fork."""
+
 EQUILIBRIUM_REACH: Final = 0.5
 """Longest step of the search, rad or length units: most forces do not change sign twice in it."""
 
@@ -66,6 +70,9 @@ found to the cube root of rounding, 1e-5 of their curvature's reach."""
 WINDOW_PLACES: Final = 48
 """Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for: a
 circuit of the mechanism that lies within one of them is missed."""
+
+WINDOW_SHIFT: Final = 0.0431
+"""By how much of such a part its ends stand off even values, and those of the window off its own."""
 
 MOST_WINDOW_TURNS: Final = 100
 """Turns of a window: each takes a hundredth of a second of an arm, and some tenths of a loop."""
