@@ -40,13 +40,13 @@ NEAR = "near"
 """In place of the letter of an assembly that was found without all others."""
 
 
-def far_notes(session: Session, inputs: Floats, state: Floats) -> list[Diagnostic]:
-    """A warning where an assembly (states,) lies far from what `near` names."""
+def far_notes(session: Session, inputs: Floats, state: Floats, row: int = 0) -> list[Diagnostic]:
+    """A warning where an assembly (states,) at a row lies far from what `near` names."""
     problem = session.problem
     coordinates, _ = probe_of(session).read(inputs, state[:, None])
     places = {name: float(coordinates[name][0]) for name in problem.assembly.near}
     motion = problem.motion
-    whole = {item.name: float(session.inputs.whole[k, 0]) for k, item in enumerate(motion.inputs)}
+    whole = {item.name: float(session.inputs.whole[k, row]) for k, item in enumerate(motion.inputs)}
     far = []
     for name, target in problem.assembly.near.items():
         if abs(_miss(problem, name, places[name], target)) > tolerances.NEAR_FAR:

@@ -88,6 +88,12 @@ def choose_start(session: Session) -> AssemblyStart:
         start = choose_start(few)
         return replace(start, row=int(rows[start.row]))
     continued = continued_start(session)
+    if continued is not None and continued.chosen is not None and continued.state is not None:
+        start = _continued(continued)
+        inputs = session.inputs.reduced[:, start.row]
+        far = far_notes(session, inputs, continued.state, start.row)
+        known = [one for one in start.diagnostics if one.code != "nearest-far"]
+        return replace(start, diagnostics=[*known, *far])
     if continued is not None:
         return _continued(continued)
     start = _choose_start(session)
