@@ -56,14 +56,17 @@ class Motions:
         self._spans.append((part.low, part.high))
         first = self._holding(self._place(part, 0))
         last = self._holding(self._place(part, part.values.size - 1))
-        meets = {self._motion[k] for k in (*first, *last)}
+        meeting = [
+            k
+            for k, other in enumerate(self._parts)
+            if self._same_dead_centre(part.dead_centre, other.dead_centre)
+        ]
+        meets = {self._motion[k] for k in (*first, *last, *meeting)}
         for number, other in enumerate(self._parts):
             if self._motion[number] in meets:
                 continue
             ends = (self._place(other, 0), self._place(other, other.values.size - 1))
-            if self._same_dead_centre(part.dead_centre, other.dead_centre) or any(
-                self._lies_in(part, end) for end in ends
-            ):
+            if any(self._lies_in(part, end) for end in ends):
                 meets.add(self._motion[number])
         motion = min(meets, default=len(self._motion))
         self._motion = [motion if one in meets else one for one in self._motion]
@@ -72,7 +75,8 @@ class Motions:
             if one.inputs[free] < start.inputs[free]:
                 start = one
         self._starts[motion] = start
-        if not (first and last) or part.dead_centre is not None:
+        # a part that lies on others adds nothing to them
+        if not first or not (last or meeting):
             self._parts.append(part)
             self._motion.append(motion)
 

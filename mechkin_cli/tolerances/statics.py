@@ -72,10 +72,11 @@ WINDOW_PLACES: Final = 48
 circuit of the mechanism that lies within one of them is missed."""
 
 WINDOW_SHIFT: Final = 0.0431
-"""By how much of such a part its ends stand off even values, and those of the window off its own."""
+"""By how much of such a part its ends stand off even values, and those of the window off its ends:
+dead centres are seldom there."""
 
 MOST_WINDOW_TURNS: Final = 100
-"""Turns of a window: each takes a hundredth of a second of an arm, and some tenths of a loop."""
+"""Turns of a window: each takes some hundredths of a second."""
 
 WINDOW_SAMPLES: Final = 16
 """Places of a branch between two values of the window, at which forces are taken: two equilibria

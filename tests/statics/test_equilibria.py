@@ -202,7 +202,7 @@ def test_an_inverted_pendulum_on_a_spring_forks(push: float) -> None:
     assert r["row.event"].tolist() == ["stable", "unstable", "stable"]
 
 
-FOLDS = {
+FOLDS: dict[str, tuple[dict[str, Any], float, float]] = {
     # m g l sin(theta) comes to its largest value; (theta - 0.3)^2 only touches zero
     "largest": ({"effort": 2 * G * 0.25}, 90.0, 3e-5),
     "touching": ({"value": "-1 N*m/rad^2*(A.theta-0.3 rad)^2"}, degrees(0.3), 1e-5),
