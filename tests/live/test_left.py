@@ -62,6 +62,11 @@ def test_all_other_kept_files_have_a_page_that_computes() -> None:
     nothing = []
     for name, path in FILE_OF.items():
         model = load(path)
+        if not ("sweep" in model.runs and model.problem.motion.rest is None):
+            runs = [run for run in model.runs if run in model.problem.responses]
+            moving = [run for run in runs if model.response(run).search is None]
+            if not moving:
+                continue  # where loads balance only the command finds
         analysis = model.analyze() if "sweep" in model.runs else model.respond()
         data, _ = page_data([analysis], modes=False)
         if "live" not in data:

@@ -212,6 +212,8 @@ def _map_vectors(data: Document, functions: Mapping[str, Any]) -> None:
     units = Units(data.get("units"))
     scope = Scope(units, data.get("parameters", {}))
     for (container, key), kind, behaviour in list(vectors(data)):
+        if isinstance(container[key], str):
+            continue  # the name of a point, which stands elsewhere
         values = [x / units.of(kind) for x in scope.vector(container[key], kind)]
         container[key] = [_text(x) for x in functions[behaviour](values)]
 

@@ -62,7 +62,8 @@ def numbers_in(value: Any) -> Iterator[Any]:
             yield from numbers_in(item)
     elif is_dataclass(value):
         for field in fields(value):
-            if field.name not in ("units", "diagnostics", "load_laws", "dimension"):
+            # a sweep is recorded, without the responses that its file may have
+            if field.name not in ("units", "diagnostics", "load_laws", "dimension", "responses"):
                 yield from numbers_in(getattr(value, field.name))
 
 

@@ -41,7 +41,7 @@ def _lines(file: Path) -> list[str]:
     model = mk.load(file)
     found: list[str] = []
     for run in model.runs:
-        analysis = model.analyze() if run == "sweep" else model.respond(run)
+        analysis = model.analyze() if run == "sweep" else model.run_free(run)
         columns = analysis.errors.columns
         tables = dict.fromkeys(column.table for column in columns)
         for table in tables:
