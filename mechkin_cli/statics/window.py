@@ -560,6 +560,9 @@ def _from_starts(
         f"{100.0 * (1.0 - tolerances.SEARCH_DOUBT):g} % confidence one more search that ends at "
         f"one finds another with a chance of at most {chance:.1g}"
     )
+    if not ended:
+        text = f"none of the searches from {starts} starts ended at an equilibrium"
+        return [Diagnostic("window-starts", "note", text, response.place)]
     at = f"{ended} searches ended at an equilibrium, the last {since} of them at known ones"
     hint = "ask for more starts: starts: 1000"
     notes = [Diagnostic("window-starts", "note", text, response.place, at, hint=hint)]

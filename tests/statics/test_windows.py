@@ -210,3 +210,22 @@ def test_a_dead_band_is_told_to_its_ends_beside_other_equilibria() -> None:
     assert -0.2 <= inside <= 0.3
     assert beyond == pytest.approx(0.3 + pi, abs=1e-9)
     assert r["row.event"].tolist()[1] == "unstable"
+
+
+def test_searches_that_all_run_away_are_told_so() -> None:
+    """Two blocks that fall without end."""
+    slide = {"type": "P", "point": [0, 0, 0], "axis": [0, 1, 0]}
+    block = {"mass": 1, "center_of_mass": [0, 0, 0]}
+    falling = {
+        "format": 1,
+        "links": {"a": block, "b": block},
+        "joints": {
+            "A": {**slide, "links": ["ground", "a"]},
+            "B": {**slide, "links": ["ground", "b"]},
+        },
+        "loads": [WEIGHT],
+    }
+    r = mk.load(falling).equilibrium(window={"A.s": (-1, 1), "B.s": (-1, 1)})
+    assert r["row.status"].tolist() == ["no-equilibrium"]
+    (note,) = (note for note in r.diagnostics if note.code == "window-starts")
+    assert note.message.startswith("none of the searches from")
