@@ -569,7 +569,8 @@ LOAD_ADVICE: Final = {
     **OUTSIDE,
     **dict.fromkeys(
         ("bush", "mount", "flexure", "silentblock"),
-        "write {type: bushing, links: [a, b], point: [...], stiffness: {x: 200 N/mm, ...}}",
+        "links are rigid; what gives between two is {type: bushing, links: [a, b], point: [...], "
+        "stiffness: {x: 200 N/mm, ...}}",
     ),
     "moment": "a moment is a torque: {type: torque, ...}",
     "couple": "a couple is a torque: {type: torque, ...}",

@@ -86,7 +86,7 @@ def part_rows(session: Session) -> int:
 def has_parts(session: Session) -> bool:
     """Whether a run has several parts: it is long, and has not the pairs of a grid."""
     motion = session.problem.motion
-    return motion.grid is None and motion.rows > part_rows(session) + 1
+    return motion.grid is None and motion.rows > tolerances.WHOLE_PARTS * part_rows(session) + 1
 
 
 def parts_of(session: Session, start: AssemblyStart, judge: Judge) -> Iterator[Part]:

@@ -48,6 +48,10 @@ PART_ROWS: Final = 1 << 15
 which two parts are held while one is written, and what is done once for each part is small beside
 its rows."""
 
+WHOLE_PARTS: Final = 2
+"""Parts of which a run is long: rows of a shorter one have the same bits turn after turn, which
+those of different parts need not have."""
+
 PART_NUMBERS: Final = 1 << 21
 """Numbers of states and turns of all rows of a part: 16 MB."""
 

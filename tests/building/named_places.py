@@ -43,7 +43,8 @@ def with_named_places(data: Data) -> int:
             link["center_of_mass"] = names.of(name, link["center_of_mass"])
     for load in data.get("loads", ()):
         if "point" in load:
-            load["point"] = names.of(load["link"], load["point"])
+            link = load["link"] if "link" in load else load["links"][1]
+            load["point"] = names.of(link, load["point"])
     for name, shape in data.get("view", {}).get("shapes", {}).items():
         if isinstance(shape, dict) and "points" in shape:
             shape["points"] = [names.of(name, place) for place in shape["points"]]

@@ -69,7 +69,7 @@ def test_strict_wants_all_rows_proven(tmp_path: Path) -> None:
 def test_a_response_is_told_to_have_no_proofs(tmp_path: Path) -> None:
     run = analyze(FILE_OF["rcsr_response"], tmp_path, "--certify")
     assert run.returncode == 0
-    assert "the rows of response response are not proven: --certify proves sweeps" in run.stderr
+    assert "the rows of response are not proven: --certify proves sweeps" in run.stderr
 
 
 def test_a_column_of_a_table(tmp_path: Path) -> None:

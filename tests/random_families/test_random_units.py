@@ -128,7 +128,12 @@ def read(model: mk.Model, run: str, words: dict[str, str]) -> Iterator[tuple[str
         if name in ENERGIES or not any(part in name for part in neither)
         if name not in model.problem.parameters
     }
-    found = model.analyze(list(kinds)) if run == SWEEP else model.respond(run, list(kinds))
+    if run == SWEEP:
+        found = model.analyze(list(kinds))
+    elif model.response(run).search is None:
+        found = model.respond(run, list(kinds))
+    else:
+        found = model.equilibrium(run, list(kinds))
     assert set(found["row.status"]) == {"ok"}, (run, words)
     for name, kind in kinds.items():
         yield f"{run}: {name}", (kind, np.asarray(found[name]) * factor(kind, words))
@@ -245,6 +250,9 @@ def test_every_number_matters(which: str, tmp_path: Path) -> None:
         assert worst(changed, wanted) > 100 * ROUNDING, place[0]
 
 
+_CHOOSING = ("near:", "window:", "step:", "vector:", "axis:", "across:")
+
+
 def only_chooses(template: str, place: re.Match[str]) -> bool:
     """Whether a number is a direction, or only says which rows, which assembly or how much of a
     curve or surface are meant."""
@@ -252,7 +260,7 @@ def only_chooses(template: str, place: re.Match[str]) -> bool:
     after = template[place.end() :].splitlines()[0]
     is_last_row = before.endswith("to: ") and "step:" in after
     is_first_moment = before.endswith("time: {from: ")
-    directs = any(key in before for key in ("near:", "step:", "vector:", "axis:", "across:"))
+    directs = any(key in before for key in _CHOOSING)
     directs = directs or "backlash:" in before  # amid which a sweep stands
     is_end = ("curve:" in before or "surface:" in before) and re.search(
         r"(from: |to: |\b[uv]: \[[^]]*)$", before

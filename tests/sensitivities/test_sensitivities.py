@@ -133,7 +133,7 @@ def test_an_rssr() -> None:
 def read_by_tables(model: mk.Model) -> list[str]:
     """The first columns of each table that are numbers."""
     texts = []
-    for table in model.tables:
+    for table in (one for one in model.tables if one.run == "sweep"):
         texts += [
             c.expression.text for c in table.columns if not c.expression.text.startswith("row")
         ]
@@ -145,6 +145,8 @@ def test_differences_of_plain_runs(path: Path) -> None:
     model = mk.load(path)
     if not model.problem.parameters or "sweep" not in model.runs:
         pytest.skip("no parameters that a sweep depends on")
+    if model.problem.motion.rest is not None:
+        pytest.skip("places at which loads balance have no sensitivities")
     quantities = read_by_tables(model)
     # a step decides how many rows there are, which is no slope
     names = [name for name in model.problem.parameters if name != "step"][:6]

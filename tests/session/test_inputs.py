@@ -308,6 +308,8 @@ def test_rates_of_ties() -> None:
 def test_rows_of_every_mechanism(stem: str) -> None:
     """High parts are the doubles; both evaluations and the enclosures agree."""
     session = model(stem).session
+    if session.problem.motion.rest is not None:
+        pytest.skip("no text says where loads balance")
     found, boxes = session.precise.inputs(session), enclosed_inputs(session.precise, session)
     for name in (*ORDERS, "reduced"):
         values, inside = getattr(found, name), getattr(boxes, name)

@@ -59,6 +59,7 @@ def test_every_verdict_has_a_colour_by_what_its_rows_have() -> None:
         **dict.fromkeys(["slack", "fleet-angle"], 1),
         **dict.fromkeys(["beyond-dead-centre", "branch-lost", "not-converged"], 2),
         **dict.fromkeys(["not-assembled", "singular-inertia", "step-limit"], 2),
+        **dict.fromkeys(["no-equilibrium", "snapped-through"], 2),
         "ok": 0,
     }
 

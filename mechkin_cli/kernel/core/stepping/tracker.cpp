@@ -193,9 +193,12 @@ class Tracker {
     const long from = row_;
     while (row_ < rows_ && sigma_[row_] <= next->sigma) ++row_;
     infill(stepper_, *node_, *next, sigma_ + from, first_ + from, first_ + row_, out_, nullptr,
-           has_before_ ? before_ : nullptr);
+           has_before_ && goes_straight_through() ? before_ : nullptr);
     go_to(next);
   }
+  // Whether this is the way of all rows. Ways of several, which may come by equal inputs, go by the two nodes about a row
+  // alone, whatever led there.
+  bool goes_straight_through() const { return !kept_ && first_ <= 1 && first_ + rows_ == out_.rows; }
   void go_to(Node*& next) {
     if (kept_) keep(*next);
     for (const TreeTurn& t : stepper_.tree_turns()) {
