@@ -14,6 +14,7 @@ from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import input_number, input_text
 from mechkin_cli.statics.forces import summed
+from mechkin_cli.statics.newton import determinant
 from mechkin_cli.statics.places import Place, Statics
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
@@ -88,13 +89,17 @@ class Arc:
             if found is not None:
                 onward, there = found
                 following = self._going(onward, there, tangent)
+                is_one = following is not None and self._is_one(
+                    place, gone, going, found, following
+                )
                 if following is not None and (
-                    self._is_one(place, gone, going, found, following)
-                    or self._crosses(place, gone, step, going, found, following)
+                    is_one or self._crosses(place, gone, step, going, found, following)
                 ):
                     turns_back = following.tangent[-1] <= 0.0
                     if turns_back and step <= tolerances.FOLD_STEP:
                         return None, self._fold(place, gone)
+                    if not turns_back and not is_one:
+                        self._tell_crossing(place, gone, going, found, following)
                     if not turns_back and ends:
                         return onward, None
                     if not turns_back:
@@ -154,10 +159,25 @@ class Arc:
         off = off - length * going.tangent
         bent = onward.tangent - going.tangent
         straight = sqrt(float(max(summed(off * off) / (length * length), summed(bent * bent))))
-        if straight > tolerances.CROSSING_BEND:
-            return False
-        self.branch.crossings.append(self._words(place, gone))
-        return True
+        return straight <= tolerances.CROSSING_BEND
+
+    def _tell_crossing(
+        self, place: Place, gone: float, going: _Going, found: tuple[Place, float], onward: _Going
+    ) -> None:
+        """Tells where another branch crosses, if it does so between two places: there the slopes
+        are singular, and their determinant changes its sign."""
+        border = going.tangent + onward.tangent
+        first, last = (
+            determinant(np.concatenate([slopes, border[None, :]]))
+            for slopes in (going.slopes, onward.slopes)
+        )
+        if first * last > 0.0 or first == last:
+            return
+        part = first / (first - last)
+        at = self._y(place, gone)
+        at = at + part * (self._y(*found) - at)
+        inputs, _ = self._at(at)
+        self.branch.crossings.append(self._words(place._replace(inputs=inputs), float(at[-1])))
 
     def _words(self, place: Place, gone: float) -> str:
         """Where a place is, as messages tell it."""

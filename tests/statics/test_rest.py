@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import radians, sin
 from pathlib import Path
 from typing import Any
@@ -124,6 +125,11 @@ def test_an_unstable_branch_is_followed_and_told() -> None:
     assert np.abs(r["A.theta"]).max() < 1e-9
     (note,) = (one for one in r.diagnostics if one.code == "unstable")
     assert "rows 9 to 15" in note.message
+    # it forks where the load is stiffness by length: 0.1 N*m/rad over 0.1 m, after 50 s
+    (fork,) = (one for one in r.diagnostics if one.code == "equilibria-cross")
+    told = re.search(r"time = ([\d.]+) s", fork.measured or "")
+    assert told is not None
+    assert float(told[1]) == pytest.approx(50, rel=1e-6)
     # the branch beside it, down to where it meets the upright one
     standing["assembly"] = {"near": {"A.theta": 100}}
     standing["motion"] = {"time": {"from": 98, "to": 14, "step": -7}, "rest": ["A.theta"]}
