@@ -1,5 +1,5 @@
-"""The branch of equilibria between two rows of a sweep at rest, by its arclength: around bends, up
-to folds, and straight on where another branch crosses."""
+"""The branch of equilibria between two rows of a sweep at rest, by its arclength: up to folds, and
+straight on where another branch crosses."""
 
 from __future__ import annotations
 
@@ -58,6 +58,16 @@ class _Going(NamedTuple):
     slopes: Floats
 
 
+class _Onward(NamedTuple):
+    """A place, the part of the way that the inputs have gone there, how the branch goes on, and
+    whether it is that of the next row."""
+
+    place: Place
+    gone: float
+    going: _Going
+    ends: bool
+
+
 class Arc:
     """The way from an equilibrium at a row towards the next row by the arclength of the branch, in
     the coordinates at rest and the part of the way that the inputs have gone."""
@@ -76,55 +86,54 @@ class Arc:
         """The place at the next row; or None and why the branch does not come there."""
         place, gone = self.start, 0.0
         going = self._going(place, gone, None)
-        step = min(self.scale, tolerances.EQUILIBRIUM_REACH) / 4.0
+        step, over = min(self.scale, tolerances.EQUILIBRIUM_REACH) / 4.0, False
         for _ in range(tolerances.MOST_ARCS):
             if going is None:
                 return None, self.branch.lost(self.row, self._words(place, gone))
-            tangent = going.tangent
-            if tangent[-1] <= 0.0:  # of the very first place
+            if going.tangent[-1] <= 0.0:  # of the very first place
                 return None, self._fold(place, gone)
-            # the last step ends at the row itself
-            ends = tangent[-1] > 0.0 and gone + step * tangent[-1] >= self.scale
-            found = self._corrected(place, gone, tangent, step, ends)
+            found = self._step(place, gone, going, step)
+            if found is not None and not self._is_one(place, gone, going, found):
+                found = None
+            if found is None and step <= tolerances.CROSSING_STEP and not over:
+                # another branch may cross: then no step that comes near to it is seen to be right
+                over = True
+                found = self._step(place, gone, going, tolerances.CROSSING_STEP)
+                if found is not None and not self._crosses(place, gone, going, found):
+                    found = None
             if found is not None:
-                onward, there = found
-                following = self._going(onward, there, tangent)
-                is_one = following is not None and self._is_one(
-                    place, gone, going, found, following
-                )
-                if following is not None and (
-                    is_one or self._crosses(place, gone, step, going, found, following)
-                ):
-                    turns_back = following.tangent[-1] <= 0.0
-                    if turns_back and step <= tolerances.FOLD_STEP:
-                        return None, self._fold(place, gone)
-                    if not turns_back and not is_one:
-                        self._tell_crossing(place, gone, going, found, following)
-                    if not turns_back and ends:
-                        return onward, None
-                    if not turns_back:
-                        place, gone, going = onward, there, following
-                        step = min(2.0 * step, tolerances.EQUILIBRIUM_REACH)
-                        continue
+                place, gone, going, ends = found
+                if ends:
+                    return place, None
+                step, over = min(2.0 * step, tolerances.EQUILIBRIUM_REACH), False
+                continue
             step *= 0.5
             if step < tolerances.LEAST_ARC:
-                if tangent[-1] < tolerances.NEAR_FOLD:
+                if going.tangent[-1] < tolerances.NEAR_FOLD:
                     return None, self._fold(place, gone)
                 return None, self.branch.lost(self.row, self._words(place, gone))
         return None, self.branch.lost(self.row, self._words(place, gone))
 
-    def _is_one(
-        self, place: Place, gone: float, going: _Going, found: tuple[Place, float], onward: _Going
-    ) -> bool:
-        """Whether two places surely lie on one branch: slopes of the forces, with the direction of
-        the branch, change by less than half of what would make them singular from either end to the
-        other, and to the middle of the curve between them (as branches of positions are judged,
-        docs/numerics.md)."""
+    def _step(self, place: Place, gone: float, going: _Going, step: float) -> _Onward | None:
+        """The place a step onward, or that at the next row where this comes first, which is not
+        judged yet; None where there is none, or where it turns back."""
+        ends = gone + step * going.tangent[-1] >= self.scale
+        found = self._corrected(place, gone, going.tangent, step, ends)
+        onward = None if found is None else self._going(*found, going.tangent)
+        if found is None or onward is None or onward.tangent[-1] <= 0.0:
+            return None
         if float(summed(onward.tangent * going.tangent)) <= tolerances.ARC_COSINE:
-            return False
-        first, last = self._y(place, gone), self._y(*found)
+            return None
+        return _Onward(*found, onward, ends)
+
+    def _is_one(self, place: Place, gone: float, going: _Going, found: _Onward) -> bool:
+        """Whether two places surely lie on one branch that does not turn back between them: slopes
+        of the forces change by less than half of what would make them singular from either end to
+        the other, and to the middle of the curve between them (as branches of positions are judged,
+        docs/numerics.md), alone and with the direction of the branch."""
+        first, last = self._y(place, gone), self._y(found.place, found.gone)
         size = sqrt(float(summed((last - first) * (last - first))))
-        middle = 0.5 * (first + last) + (size / 8.0) * (going.tangent - onward.tangent)
+        middle = 0.5 * (first + last) + (size / 8.0) * (going.tangent - found.going.tangent)
         inputs, _ = self._at(middle)
         way = self.statics.way(np.stack([place.inputs, inputs], axis=1), place)
         if way.reached < 2:
@@ -132,52 +141,37 @@ class Arc:
         between = self._slopes(Place(inputs, way.states[:, 1], way.turns[:, 1]), float(middle[-1]))
         if between is None:
             return False
-        border = going.tangent + onward.tangent
-        border = border / sqrt(float(summed(border * border)))
-        begin, half, end = (
-            np.concatenate([slopes, border[None, :]])
-            for slopes in (going.slopes, between[1], onward.slopes)
-        )
-        pairs = ((begin, half), (begin, end), (end, half), (end, begin))
-        return all(_change(one, other) <= tolerances.SPECTRAL_RADIUS for one, other in pairs)
+        border = _between(going, found.going)
+        slopes = (going.slopes, between[1], found.going.slopes)
+        for begin, half, end in (
+            [each[:, :-1] for each in slopes],
+            [np.concatenate([each, border]) for each in slopes],
+        ):
+            pairs = ((begin, half), (begin, end), (end, half), (end, begin))
+            if any(_change(one, other) > tolerances.SPECTRAL_RADIUS for one, other in pairs):
+                return False
+        return True
 
-    def _crosses(
-        self,
-        place: Place,
-        gone: float,
-        step: float,
-        going: _Going,
-        found: tuple[Place, float],
-        onward: _Going,
-    ) -> bool:
-        """Whether another branch of equilibria crosses between two places, so that no slopes tell
-        them from it, and this one goes on in a straight line."""
-        if step > tolerances.CROSSING_STEP:
-            return False
-        off = self._y(*found) - self._y(place, gone)
-        length = sqrt(float(summed(off * off)))
-        off = off - length * going.tangent
-        bent = onward.tangent - going.tangent
+    def _crosses(self, place: Place, gone: float, going: _Going, found: _Onward) -> bool:
+        """Whether another branch of equilibria crosses between two places, where this one goes on
+        straight; then it is told where. There the slopes with the direction of the branch
+        are singular: their determinant changes its sign."""
+        here, way = self._y(place, gone), self._y(found.place, found.gone)
+        way = way - here
+        length = sqrt(float(summed(way * way)))
+        off = way - length * going.tangent
+        bent = found.going.tangent - going.tangent
         straight = sqrt(float(max(summed(off * off) / (length * length), summed(bent * bent))))
-        return straight <= tolerances.CROSSING_BEND
-
-    def _tell_crossing(
-        self, place: Place, gone: float, going: _Going, found: tuple[Place, float], onward: _Going
-    ) -> None:
-        """Tells where another branch crosses, if it does so between two places: there the slopes
-        are singular, and their determinant changes its sign."""
-        border = going.tangent + onward.tangent
+        border = _between(going, found.going)
         first, last = (
-            determinant(np.concatenate([slopes, border[None, :]]))
-            for slopes in (going.slopes, onward.slopes)
+            determinant(np.concatenate([each.slopes, border])) for each in (going, found.going)
         )
-        if first * last > 0.0 or first == last:
-            return
-        part = first / (first - last)
-        at = self._y(place, gone)
-        at = at + part * (self._y(*found) - at)
+        if straight > tolerances.CROSSING_BEND or first * last >= 0.0:
+            return False
+        at = here + (first / (first - last)) * way
         inputs, _ = self._at(at)
         self.branch.crossings.append(self._words(place._replace(inputs=inputs), float(at[-1])))
+        return True
 
     def _words(self, place: Place, gone: float) -> str:
         """Where a place is, as messages tell it."""
@@ -285,6 +279,13 @@ class Arc:
                 return None
             y = y + by
         return None
+
+
+def _between(one: _Going, other: _Going) -> Floats:
+    """The direction between those of a branch at two places, (1, free + 1)."""
+    border = one.tangent + other.tangent
+    found: Floats = (border / sqrt(float(summed(border * border))))[None, :]
+    return found
 
 
 def _change(one: Floats, other: Floats) -> float:

@@ -1,10 +1,10 @@
 """A sweep at rest: the branch of equilibria along the rows.
 
 From an equilibrium at one row the branch is followed to both ends. Rows are taken in stretches: the
-coordinates at rest are predicted from the rows before, all rows of a stretch are corrected at once
-with the stiffness of its ends, and a stretch that does not converge is halved. Where even the next
-row is not reached, the branch is followed by its arclength between the two rows: it may get there
-around a bend, or turn back before (a fold), beyond which the mechanism snaps through.
+coordinates at rest are predicted from the rows before, and all rows of a stretch are corrected at
+once with the stiffness of its ends. A stretch that does not converge, or whose rows are not surely
+on one branch, is halved. Where the next row alone is not, the branch is followed by its arclength:
+it gets there, or turns back before (a fold), and the mechanism snaps through.
 """
 
 from __future__ import annotations

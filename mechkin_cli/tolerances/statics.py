@@ -184,9 +184,6 @@ LEAST_ARC: Final = 1e-9
 NEAR_FOLD: Final = 1e-3
 """Where the inputs move by less than this part of the branch's length, it turns back there."""
 
-FOLD_STEP: Final = 1e-7
-"""Arclength within which a fold is located: its inputs are then right to the square of that."""
-
 ARC_COSINE: Final = 0.9
 """Least cosine between the directions of a branch a step apart."""
 
