@@ -21,8 +21,8 @@ from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Continued, input_unit
 from mechkin_cli.statics.arc import Arc, End
-from mechkin_cli.statics.forces import summed
-from mechkin_cli.statics.newton import Balancing, determinant, search
+from mechkin_cli.statics.forces import determinant, summed
+from mechkin_cli.statics.newton import Balancing, search
 from mechkin_cli.statics.places import Place, Statics, eigen
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
@@ -173,10 +173,11 @@ class _Branch:
         self.unstable[known[-1]] = _least(matrix) < 0.0
         return known[-1], None
 
-    def lost(self, row: int, at: str | None = None) -> End:
-        """That the branch could not be followed beyond a row, to which place at most."""
+    def lost(self, row: int, at: str | None = None, hint: str | None = None) -> End:
+        """That the branch could not be followed beyond a row, to which place at most, and what may
+        be done."""
         text = f"the branch of equilibria could not be followed beyond row {row + 1}"
-        hint = (
+        hint = hint or (
             "see whether the loads have a value and a direction there, or end the sweep before it"
         )
         return Status.branch_lost, Diagnostic("rest-lost", "error", text, None, at, hint=hint)

@@ -23,12 +23,12 @@ from mechkin_cli.mechanism import Limit, is_angle
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.search import all_assemblies, pose_keys, pose_number, same_poses
 from mechkin_cli.session import input_number, input_text, input_unit, turn_of
+from mechkin_cli.statics.forces import determinant
 from mechkin_cli.statics.indifference import Motions, Part
 from mechkin_cli.statics.newton import (
     Balancing,
     Search,
     SearchEnd,
-    determinant,
     search,
     settle,
     slopes,

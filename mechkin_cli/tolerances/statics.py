@@ -181,8 +181,13 @@ is (2 e / step)^2, so that those nearer than 5e-6 count as crossing."""
 LEAST_ARC: Final = 1e-9
 """Shortest step by arclength: below, branches that meet are not told apart."""
 
-NEAR_FOLD: Final = 1e-3
-"""Where the inputs move by less than this part of the branch's length, it turns back there."""
+NEAR_DEAD_CENTRE: Final = 0.05
+"""Coordinates that tell places worse than others by this part stand near a dead centre: slopes by
+them are differences over `NEWTON_DIFFERENCE`, which have no values closer to one than that, where
+rates are its square root."""
+
+FOLD_STEP: Final = 1e-5
+"""Arclength within which a fold is located; its inputs are then right to the cube of that."""
 
 ARC_COSINE: Final = 0.9
 """Least cosine between the directions of a branch a step apart."""
