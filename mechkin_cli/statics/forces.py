@@ -230,7 +230,7 @@ class Forces:
 
         def of_rows(array: Floats) -> Floats:
             column = array[:, None] if array.ndim == 1 else array
-            return np.array(np.broadcast_to(column, (len(array), count)))
+            return np.repeat(column, count, axis=1) if column.shape[1] == 1 else column
 
         state = of_rows(place.state)
         guess = session.moved_along(state, combined(place.tangents, u)) if u.any() else state

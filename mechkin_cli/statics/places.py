@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
 
 
+_FORCES = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
+
+
 class Place(NamedTuple):
     """Inputs (inputs,) with their whole turns, states (states,) and turns (turn slots,) of one
     closed place, in kernel units."""
@@ -86,6 +89,7 @@ class Statics:
             [turn_of(problem, item) is not None for item in inputs]
             + [False] * (len(session.driven) - len(inputs))
         )
+        self._turns = np.where(self.cyclic, 2.0 * pi, np.inf)[:, None]
 
     @property
     def count(self) -> int:
@@ -99,7 +103,7 @@ class Statics:
 
     def reduced(self, inputs: Floats) -> tuple[Floats, Floats]:
         """Inputs (inputs, places) without whole turns, and these."""
-        whole = np.where(self.cyclic[:, None], np.rint(inputs / (2.0 * pi)), 0.0)
+        whole = np.rint(inputs / self._turns)
         return inputs - whole * (2.0 * pi), whole
 
     def rows(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> RowInputs:
@@ -116,11 +120,10 @@ class Statics:
     def forces(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Forced:
         """Forces at places (inputs, places) closed from guesses (states, places)."""
         readout = self.readout
-        demand = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
-        batch = self.session.run(self.rows(inputs, states, turns, time), Ask(demand, readout))
+        batch = self.session.run(self.rows(inputs, states, turns, time), Ask(_FORCES, readout))
         assert batch.outputs is not None
-        forces = np.stack([batch.outputs[readout.slots[q.name].start] for q in readout.wanted])
-        forces = forces * self.units[:, None]
+        slots = [readout.slots[wanted.name].start for wanted in readout.wanted]
+        forces = batch.outputs[slots] * self.units[:, None]
         good = batch.good & np.isfinite(forces).all(axis=0)
         if batch.undefined is not None:
             good &= ~batch.undefined.astype(bool)

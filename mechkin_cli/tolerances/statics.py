@@ -117,23 +117,31 @@ at a dead centre, and there is no stiffness by it."""
 
 # Sweeps at rest.
 
-MOST_REST_ROWS: Final = 256
+MOST_REST_ROWS: Final = 1024
 """Rows of a sweep at rest that are corrected at once."""
 
-REST_POINTS: Final = 3
-"""Known rows through which the next ones are extrapolated: with more, long stretches swing."""
+REST_POINTS: Final = 8
+"""Known rows through which the next ones are extrapolated, at most: of more, rounding is seen where
+the next rows go four times as far."""
+
+REST_GROWTH: Final = 8
+"""How many times as many rows as before are corrected next, at most, and what part of them where
+they were too many."""
+
+REST_TERM: Final = 0.1
+"""Rows are predicted as far as the last term of their polynomial is below this, rad or length
+units: Newton's method needs three steps then."""
+
+REST_REACH: Final = 0.2
+"""Rows are predicted by the rate of the branch alone up to this far from the first one, rad or
+length units."""
+
+REST_NODES: Final = 16
+"""Rows of a stretch that are corrected with a stiffness of their own, at most; those between follow
+by interpolation."""
 
 MOST_CHORDS: Final = 12
-"""Corrections of predicted equilibria with one stiffness: three or four are enough."""
-
-TELLING_STEP: Final = 1e-7
-"""Corrections beyond this, rad or length units, tell the slope of the forces to nine digits."""
-
-FEW_CHORDS: Final = 4
-"""So few corrections tell that the next stretch may be longer."""
-
-MANY_CHORDS: Final = 6
-"""More corrections tell that the next stretch should be shorter."""
+"""Corrections of predicted equilibria: three or four are enough."""
 
 CHORD_GAIN: Final = 0.5
 """Each correction has to be smaller than the one before by this, or it was predicted too far."""
