@@ -68,8 +68,14 @@ SAME_EQUILIBRIUM: Final = 1e-6
 found to the cube root of rounding, 1e-5 of their curvature's reach."""
 
 WINDOW_PLACES: Final = 48
-"""Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for: a
-circuit of the mechanism that lies within one of them is missed."""
+"""Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for."""
+
+CIRCUIT_STARTS: Final = 128
+"""Random starts with the coordinate free, taken at once: 106 that end within the window at known
+circuits bring the chance of another down to `WINDOW_CHANCE`."""
+
+MOST_CIRCUIT_STARTS: Final = 2048
+"""Such starts at most, where few of them end within the window."""
 
 WINDOW_SHIFT: Final = 0.0431
 """By how much of such a part its ends stand off even values, and those of the window off its ends:
