@@ -23,6 +23,7 @@ from mechkin_cli.mechanism import Limit, is_angle
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.search import all_assemblies, pose_keys, pose_number, same_poses
 from mechkin_cli.session import input_number, input_text, input_unit, turn_of
+from mechkin_cli.statics.friction import FrictionRest, RestInterval
 from mechkin_cli.statics.indifference import Motions, Part
 from mechkin_cli.statics.newton import (
     Balancing,
@@ -62,9 +63,14 @@ def in_window(one: Prepared) -> EquilibriumResult:
     notes = [*notes, *known.notes(response)]
     judgements = [(found, judged(balancing, found)) for found in known.found]
     judgements.sort(key=lambda pair: pair[1].coordinates.tolist())
+    rests: list[RestInterval | None] = []
+    if statics.count == 1 and response.frictions:
+        rest = FrictionRest(statics, response, response.search.window[0])
+        judgements, rests = rest.rows(balancing, judgements, curve.places)
+        notes += rest.notes(rests)
     if not judgements:
         notes = [*notes, _none(response)]
-    return EquilibriumResult(response, balancing, start, judgements, notes)
+    return EquilibriumResult(response, balancing, start, judgements, notes, rests)
 
 
 MOST_SPANS = 4
@@ -214,6 +220,7 @@ class _Curve:
         self.lost: list[float] = []
         self.at_dead_centres: list[float] = []
         self.motions = Motions(statics, self._inputs)
+        self.places: list[tuple[Floats, Floats, Floats]] = []
         self.incomplete = 0.0
         self.largest = 0.0
 
@@ -229,6 +236,7 @@ class _Curve:
                 if not one.is_whole
             ]
             for one in ways:
+                self.places.append((one.values, one.states, one.turns))
                 self._look_along(one)
             self._look_across([one for one in ways if not one.is_whole])
             before = after
