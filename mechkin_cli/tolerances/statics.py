@@ -209,3 +209,30 @@ ARC_COSINE: Final = 0.9
 TURNED_BALANCE: Final = 1e-9
 """Force left at an equilibrium whose angles were turned by whole turns, in parts of the largest of
 one load, up to which it is one still: turns add rounding alone, a spring that counts them 2 pi."""
+
+# Rest by friction.
+
+ABOUT_TO_MOVE: Final = 1e-30
+"""Acceleration that tells the way in which a mechanism at rest would begin to move: its square is
+still a number, and what it does to inertia is far below the rounding of loads."""
+
+REST_INTERVAL_STEP: Final = 2.0**-7
+"""Step, rad or length units, by which the places of an interval of rest are looked at: where the
+mechanism slips within less, and rests again, is missed."""
+
+REST_INTERVAL_PLACES: Final = 32
+"""Places that are looked at in one call."""
+
+REST_DEAD_CENTRE_PLACES: Final = 24
+"""Places towards a dead centre that ends an interval, each half as far from it as the last one."""
+
+REST_EDGE_PART: Final = 2.0**-10
+"""Parts of a bracket beside the root of a line through its ends at which it is cut: it is a
+thousand times shorter where the line is that good."""
+
+SAME_REST_SHARE: Final = 1e-6
+"""Shares of friction at one pose that differ by more are of other loads, as of springs that count
+turns."""
+
+MOST_REST_INTERVALS: Final = 4
+"""Intervals of rest whose ends are told one by one."""
