@@ -412,11 +412,9 @@ class Curve:
         starts = self.motions.starts
         if not starts:
             return
-        self.known.found = [
-            one
-            for one in self.known.found
-            if not self.motions.has(self.balancing.uncharted(self.statics, one.place))
-        ]
+        self.known.leave_out(
+            lambda one: self.motions.has(self.balancing.uncharted(self.statics, one.place))
+        )
         for place in starts:
             found = self._found(place)
             if found is not None:

@@ -88,13 +88,16 @@ WINDOW_SAMPLES: Final = 16
 """Places of a branch between two values of the window, at which forces are taken: two equilibria
 nearer to each other than that are seen where the force comes near to zero between them."""
 
-WINDOW_STARTS: Final = 64
+WINDOW_STARTS: Final = 256
 """Starts of a search in a window of several freedoms, at least."""
+
+WINDOW_BATCH: Final = 128
+"""Searches that go side by side: more share no more of a call's cost."""
 
 WINDOW_CHANCE: Final = 0.05
 """The chance that one more search finds another equilibrium, at which a search in a window ends."""
 
-MOST_WINDOW_STARTS: Final = 2048
+MOST_WINDOW_STARTS: Final = 4096
 """Starts of a search in a window of several freedoms, at most."""
 
 MOST_SETTLING_STEPS: Final = 30
