@@ -204,7 +204,7 @@ class Curve:
             pairs = (self.between + 1) * (self.between + 2)
             doubt = float(functions.log(pairs / tolerances.SEARCH_DOUBT))
             self.chance = min(1.0, doubt / max(since, 1))
-            if self.chance <= tolerances.WINDOW_CHANCE:
+            if self.chance <= tolerances.CIRCUIT_CHANCE:
                 return
 
     def _box(self, free: Session) -> Within:

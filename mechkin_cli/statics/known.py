@@ -125,6 +125,16 @@ class Known:
             return None
         return one._replace(place=place), values
 
+    def repeats(self, one: Search) -> bool:
+        """Whether the loads are the same at a place and a turn further in each of the window's
+        angles: no spring counts their turns."""
+        here = slopes(self.balancing.forces, one.place)
+        for k in range(len(self.window)):
+            there = slopes(self.balancing.forces, self._turned(one.place, k, 1.0))
+            if here is None or there is None or not _are_same(here, there, one.largest):
+                return False
+        return True
+
     def _turned(self, place: FreePlace, number: int, turns: float) -> FreePlace:
         """A place with one of the window's angles some whole turns further."""
         session = self.balancing.chosen

@@ -35,7 +35,7 @@ def from_starts(
     """Searches from places spread over the window; how sure it is that they found all."""
     assert response.search is not None
     least = max(response.search.starts, tolerances.WINDOW_STARTS)
-    torus = _is_torus(known)
+    closed: bool | None = None
     places = _Places(balancing, statics, known)
     ended = since = 0
     chance = 1.0
@@ -44,13 +44,17 @@ def from_starts(
         ended += len(found)
         for is_new in known.add_all(found):
             since = 0 if is_new else since + 1
+        if found and closed is None:
+            closed = _is_closed(known) and known.repeats(found[0])
         # as of assemblies: each of the known ones could have been the last that was missing
         pairs = max(len(known.found) * (len(known.found) + 1), 1)
         chance = min(1.0, float(functions.log(pairs / tolerances.SEARCH_DOUBT)) / max(since, 1))
-        enough = chance <= tolerances.WINDOW_CHANCE or not ended
-        if places.starts >= least and enough and not (torus and known.excess):
+        if not ended and places.starts >= tolerances.HOPELESS_STARTS:
             break
-    return _notes(response, known, _Count(places.starts, ended, since, chance), torus)
+        enough = places.starts >= least and chance <= tolerances.WINDOW_CHANCE
+        if enough and not (closed and _is_odd(known)):
+            break
+    return _notes(response, known, _Count(places.starts, ended, since, chance), bool(closed))
 
 
 class _Count(NamedTuple):
@@ -63,7 +67,7 @@ class _Count(NamedTuple):
     chance: float
 
 
-def _notes(response: ResponseProblem, known: Known, told: _Count, torus: bool) -> list[Diagnostic]:
+def _notes(response: ResponseProblem, known: Known, told: _Count, closed: bool) -> list[Diagnostic]:
     """How sure it is that all were found."""
     count = len(known.found)
     text = (
@@ -80,21 +84,26 @@ def _notes(response: ResponseProblem, known: Known, told: _Count, torus: bool) -
     )
     hint = "ask for more starts: starts: 10000"
     notes = [Diagnostic("window-starts", "note", text, response.place, at, hint=hint)]
-    if torus and known.excess:
-        # M. Morse: on a torus minima and saddles of even index are as many as those of odd index
+    if closed and _is_odd(known):
         text = "equilibria are missing: over whole turns those of even and of odd index are as many"
+        if known.balancing.chosen.graph.closings:
+            text = (
+                "equilibria are missing, or branches of the mechanism cross: over whole turns the "
+                "number of equilibria is even"
+            )
         notes.append(Diagnostic("window-missing", "warning", text, response.place, hint=hint))
     return notes
 
 
 def _searched(balancing: Balancing, places: FreePlace) -> list[Search]:
-    """Searches from places, every second of which first goes down."""
+    """Searches from places, some of which first go down: stable places are few, and most are met
+    after little of it."""
     if not places.state.shape[1]:
         return []
-    second = np.arange(1, places.state.shape[1], 2)
-    lower, _ = settle(balancing, places.at(second))
+    some = np.arange(0, places.state.shape[1], tolerances.SETTLED_START)
+    lower, _ = settle(balancing, places.at(some))
     for array, new in zip(places, lower, strict=True):
-        array[..., second] = new
+        array[..., some] = new
     return searches(balancing, places)
 
 
@@ -160,13 +169,33 @@ class _Places:
         return centre, radius
 
 
-def _is_torus(known: Known) -> bool:
-    """Whether the window has every place of an open chain of joints that turn."""
-    session, (low, high) = known.balancing.chosen, known.ends
-    inputs = session.problem.motion.inputs[: len(known.window)]
-    turns = all(turn_of(session.problem, item) is not None for item in inputs)
+def _is_closed(known: Known) -> bool:
+    """Whether the window has every place of a mechanism whose places are a closed manifold: all
+    joints of its tree turn."""
+    chosen, (low, high) = known.balancing.chosen, known.ends
+    inputs = chosen.problem.motion.inputs[: len(known.window)]
+    turns = all(turn_of(chosen.problem, item) is not None for item in inputs)
     wide = bool((high - low >= 2.0 * np.pi - tolerances.SAME_EQUILIBRIUM).all())
-    return turns and wide and not session.graph.closings
+    parts = [carrier.part for carrier in known.balancing.forces.session.layout.carriers]
+    bounded = all(
+        part.track is None
+        and (part.type.is_ball or all(freedom.is_cyclic for freedom in part.type.freedoms))
+        for part in parts
+    )
+    return turns and wide and bounded
+
+
+def _is_odd(known: Known) -> bool:
+    """Whether equilibria are missing on a closed manifold.
+
+    M. Morse: those with an even and those with an odd number of unstable directions differ by its
+    Euler characteristic. That of a torus, and of all in odd dimensions, is zero; that of regular
+    loops is even, since equations in the coordinates of a tree have a trivial normal bundle.
+    """
+    chosen = known.balancing.chosen
+    if chosen.graph.closings and known.balancing.forces.freedoms % 2 == 0:
+        return bool(known.excess % 2)
+    return known.excess != 0
 
 
 def _spread(number: int, count: int) -> Floats:
