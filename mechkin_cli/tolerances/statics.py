@@ -217,3 +217,15 @@ turns."""
 
 MOST_REST_INTERVALS: Final = 4
 """Intervals of rest whose ends are told one by one."""
+
+# Balance in double-double.
+
+BALANCE_CORRECTIONS: Final = 10
+"""Corrections of a place: each leaves 1e-8 of the one before, or what the place leaves squared."""
+
+REPEATED_BALANCE: Final = 1e-30
+"""Corrections below this, rad or length units, are rounding of double-doubles."""
+
+BALANCED_PLACE: Final = 1e-24
+"""Corrections that stay above this, rad or length units, are of a place that a stiffness near zero
+hardly tells: true errors of doubles would not be seen beside them."""
