@@ -18,7 +18,6 @@ import numpy as np
 
 from mechkin_cli import idle, mobility, tolerances
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_coordinate
-from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, spaced_moments
 from mechkin_cli.building.spacing import has_too_many_rows
@@ -368,17 +367,12 @@ class _ResponseBuilder:
         ) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
-        start = build_start(fields, path, section, self.joints)
         frictions = mechanism.frictions
-        if sum(one.value is not None for one in start) == 1:
-            # rows tell in which interval it holds
-            mechanism = replace(mechanism, frictions=())
-        else:
-            mechanism = without_friction(fields, mechanism, path)
+        mechanism = replace(mechanism, frictions=())
         return ResponseProblem(
             name=name,
             place=fields.document.key_place(path),
-            start=start,
+            start=build_start(fields, path, section, self.joints),
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             driven=driven.inputs,
@@ -445,9 +439,14 @@ class _ResponseBuilder:
         path: Path = (known.section, name)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
+        start = known.start
+        if known.search is None:
+            start = build_start(self.fields, path, section, self.joints)
+        else:
+            mechanism = replace(mechanism, frictions=known.mechanism.frictions)
         return replace(
             known,
-            start=build_start(self.fields, path, section, self.joints),
+            start=start,
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             mechanism=self._kept(mechanism),
