@@ -197,6 +197,11 @@ class _Load:
         return ()
 
     @property
+    def fastened_at(self) -> tuple[Attached, ...]:
+        """The points of links at which it is fastened, if any."""
+        return self.ends
+
+    @property
     def owner(self) -> str:
         """The name of its quantities, if it has some."""
         return ""
@@ -337,6 +342,12 @@ class Bushing(_Load):
     def owner(self) -> str:
         """As of every load."""
         return self.name
+
+    @property
+    def fastened_at(self) -> tuple[Attached, ...]:
+        """As of every load."""
+        origins = (frame.o for frame in self.frames)
+        return tuple(Attached(*end) for end in zip(self.links, origins, strict=True))
 
     @property
     def reads_rates(self) -> bool:

@@ -103,6 +103,10 @@ class Source(Protocol):
         """Those with another value of a parameter, a factor of its own."""
         ...
 
+    def pictured(self, found: Vibration) -> str:
+        """A picture of the modes."""
+        ...
+
     def shown(self, found: Vibration, path: str | PathLike[str] | None) -> Any:
         """A page in which the modes are played."""
         ...
@@ -415,6 +419,14 @@ class Vibration(Listed):
         """
         assert self._source is not None
         return self._source.shown(self, path)
+
+    def picture(self) -> str:
+        """The modes on one picture, as the text of an SVG file: a panel for each, where the
+        mechanism stands as in the row, with arrows along which its points, joints and mass centres
+        move. Of a mode with imaginary parts it is the moment at which what moves most is
+        outermost; of very many modes the lowest are shown."""
+        assert self._source is not None
+        return self._source.pictured(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled as what it is made from."""
