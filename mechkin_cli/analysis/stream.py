@@ -147,11 +147,11 @@ class Stream:
 
     @cached_property
     def along(self) -> RunParameter | None:
-        """What the run goes along: with its values in some of the rows."""
+        """What the run goes along: with its values in some of the rows, if in any."""
         units, known = self.source.session.problem.units, self.source.session.problem.quantities()
         if not isinstance(self.source, Sweep):
             unit = units.label(known["time"].dimension)
-            return RunParameter("time", self.source.moments, unit)
+            return RunParameter("time", np.empty(0), unit)
         motion = rows_of_start(self.source.session)[0].problem.motion
         time = {} if motion.time is None else {"time": motion.time.written}
         return moving_input(

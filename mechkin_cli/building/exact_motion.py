@@ -89,8 +89,9 @@ def start_motion(fields: Fields, response: ResponseProblem, recorder: ExactRecor
         response: with its start recorded and nothing driven.
         recorder: holds the recorded numbers.
     """
-    in_si: dict[str, Any] = {"time": float(response.moments.values[0])}
-    written: dict[str, Any] = {"time": float(response.moments.written[0])}
+    first = response.moments.part(slice(1))
+    in_si: dict[str, Any] = {"time": float(first.values[0])}
+    written: dict[str, Any] = {"time": float(first.written[0])}
     for item in response.start:
         if item.value is not None:
             orders = (item.value, 0.0 if item.rate is None else item.rate, 0.0, 0.0)

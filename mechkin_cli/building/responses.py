@@ -502,10 +502,11 @@ class _ResponseBuilder:
         place = (*path, "time")
         errors = self.fields.error_count
         if isinstance(section.time, TimeSection):
-            clock = spaced_moments(self.fields, place, section.time, self.per_row)
+            held = bool(section.driven)
+            clock = spaced_moments(self.fields, place, section.time, self.per_row, held=held)
         else:
             clock = self._listed(place, section.time)
-        if clock.time.written.size < 2 and self.fields.error_count == errors:
+        if clock.time.rows < 2 and self.fields.error_count == errors:
             text = "a response needs two moments, its start and a later one"
             self.fields.error("one-moment", place, text, "give time: {from, to, step}")
         return clock
@@ -577,7 +578,7 @@ class _ResponseBuilder:
         if self.fields.error_count > errors:
             return value
         most = tolerances.MOST_RESPONSE_STEPS
-        span = float(moments.values[-1] - moments.values[0])
+        span = moments.duration
         if not value > 0.0:
             self.fields.error("zero-step", path, "a step takes a positive time", "write 1e-3 s")
         elif span > most * value:

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from mechkin_cli.response.report import MotionRows
     from mechkin_cli.response.result import Energies
     from mechkin_cli.session import Packing, Session
-    from mechkin_cli.show import Floats
 
 
 class _Whole(NamedTuple):
@@ -71,11 +70,6 @@ class ResponseBlocks:
     def run_rows(self) -> int:
         """The rows of the table: those of the file, or up to a stop."""
         return self._whole.end.rows if self.in_blocks else self._one.response.rows
-
-    @property
-    def moments(self) -> Floats:
-        """Of the rows, in the file's unit (rows,)."""
-        return self._one.response.moments.written
 
     @property
     def driven(self) -> tuple[str, ...]:

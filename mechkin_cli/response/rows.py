@@ -54,7 +54,7 @@ def rows_problem(
     every = response.moments
     end = place.first + place.rows - (stop is not None)
     rows = slice(place.first, end)
-    moments = Moments(every.values[rows], every.written[rows])
+    moments = every.part(rows)
     driven = tuple(_part(item, rows) for item in response.driven)
     if stop is not None:
         written = float(free.problem.units.from_si(stop, TIME))
@@ -171,7 +171,8 @@ def run_end(one: Prepared, report: MotionReport, reached: int) -> RunEnd:
         count = reached
         if report.rows:
             # a stop at the moment of the last row before it has that row
-            row = float(one.response.moments.values[report.rows - 1])
+            last = slice(report.rows - 1, report.rows)
+            row = float(one.response.moments.part(last).values[0])
             count -= abs(report.time - row) <= tolerances.SAME_MOMENT * abs(row)
     return RunEnd(report, count, reached, report.rows < reached and report.rows < count)
 
