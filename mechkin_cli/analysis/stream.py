@@ -110,13 +110,13 @@ class Stream:
             if not any(self.branch):
                 self.branch = part.result.mode, part.result.how
             if self.run != SWEEP:
-                error = np.asarray(part.result.quantity("row.energy_error").value)
-                verdicts.measure("energy error", error[part.own])
                 self.ended = ended(part.result, self.ended)
             solved, own = PartRows(self, part.result), part.own
             del part, rows
             yield solved, own
             del solved
+        if not isinstance(self.source, Sweep):
+            verdicts.measure("energy error", np.array([self.source.energy_error]))
 
     @property
     def in_blocks(self) -> bool:

@@ -1,9 +1,9 @@
 """A response in blocks of rows, each of which may be forgotten when the next one is taken.
 
 The kernel marches on in a thread of its own and hands on the rows of a block as it has reached them
-(core/response), so it takes the very steps that it takes where all rows are held. The motion is
-gone through twice: how it ends, and the energies by which its errors are measured, are known behind
-its last row alone.
+(core/response), so it takes the very steps that it takes where all rows are held. How many rows a
+motion with stops has, and the energies by which `row.energy_error` is measured, are known behind
+its last row alone: where they are wanted before, the motion is gone through twice.
 """
 
 from __future__ import annotations
@@ -30,8 +30,11 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.mechanism import Problem, ResponseProblem, Wanted
     from mechkin_cli.response.report import MotionRows
-    from mechkin_cli.response.result import Energies
+    from mechkin_cli.response.result import Energies, ResponseResult
     from mechkin_cli.session import Packing, Session
+
+
+_ENERGY_ERROR = "row.energy_error"
 
 
 class _Whole(NamedTuple):
@@ -55,6 +58,7 @@ class ResponseBlocks:
         self._one: Prepared = prepare(problem, response, packing, session)
         self._packing = packing
         self.names = tuple(dict.fromkeys(quantities))
+        self._taken: Energies | None = None  # of the rows that have been taken so far
 
     @property
     def session(self) -> Session:
@@ -69,7 +73,8 @@ class ResponseBlocks:
     @property
     def run_rows(self) -> int:
         """The rows of the table: those of the file, or up to a stop."""
-        return self._whole.end.rows if self.in_blocks else self._one.response.rows
+        one = self._one
+        return self._whole.end.rows if self.in_blocks and one.response.stops else one.response.rows
 
     @property
     def driven(self) -> tuple[str, ...]:
@@ -113,31 +118,47 @@ class ResponseBlocks:
         if not self.in_blocks:
             (result,) = integrated([self._one], self._packing)
             read(result, self.names)
+            self._take(result)
             yield Part(result, slice(0, result.rows))
             return
-        end, energies = self._whole
-        done = 0
+        rows, done, self._taken = self.run_rows, 0, None
+        if _ENERGY_ERROR in self.names:
+            _ = self._whole  # before another motion is under way
         for motion in self._marched():
-            count = min(motion.states.shape[1], end.rows - done)
+            end = self._end_at(motion)
+            count = min(motion.states.shape[1], rows - done)
             if count > 0:
-                yield self._part(motion, end, Span(done, count, end.rows), energies)
+                yield self._part(motion, end, Span(done, count, rows))
             done += count
         # rows that the motion did not come to
         nothing = replace(motion, states=np.zeros_like(motion.states))
-        while done < end.rows:
-            count = min(self.block_rows, end.rows - done)
-            yield self._part(nothing, end, Span(done, count, end.rows), energies)
+        while done < rows:
+            count = min(self.block_rows, rows - done)
+            yield self._part(nothing, end, Span(done, count, rows))
             done += count
 
-    def _part(
-        self, motion: MotionRows, end: RunEnd, place: Span, energies: Energies | None
-    ) -> Part:
+    def _end_at(self, motion: MotionRows) -> RunEnd:
+        """How the motion ends, as some of its rows tell: that they are reached, and the last of
+        them all."""
+        if self._one.response.stops:
+            return self._whole.end
+        every = self._one.response.rows
+        return run_end(self._one, motion.report, motion.count if motion.report.is_over else every)
+
+    def _part(self, motion: MotionRows, end: RunEnd, place: Span) -> Part:
         result = block_of(self._one, motion, end, place)
         read(result, self.names)
-        result.energies = energies
+        self._take(result)
+        result.run_energies = lambda: self._whole.energies
         stops = [self._one.response.stops[end.report.stop].words] if end.is_stopped else []
         result.run_events = (*[""] * (end.rows > len(stops)), *stops)
         return Part(result, slice(0, place.rows))
+
+    def _take(self, result: ResponseResult) -> None:
+        found = result.energies_with(self._taken)
+        if found is not None and result.report is not None:
+            found = found.between(result.report, self._one.free.layout.length)
+        self._taken = found
 
     @cached_property
     def _whole(self) -> _Whole:
@@ -145,15 +166,22 @@ class ResponseBlocks:
         energies: Energies | None = None
         every, done = self._one.response.rows, 0
         for motion in self._marched():
-            report, count = motion.report, motion.states.shape[1]
+            report = motion.report
             end = run_end(self._one, report, motion.count if report.is_over else every)
-            count = min(count, end.rows - done)
+            count = min(motion.states.shape[1], end.rows - done)
             if count > 0:
                 result = block_of(self._one, motion, end, Span(done, count, every))
                 read(result, ())
                 energies = result.energies_with(energies)
             done += count
-        return _Whole(end, energies)
+        return _Whole(end, energies and energies.between(report, self._one.free.layout.length))
+
+    @property
+    def energy_error(self) -> float:
+        """The largest of the rows, when all have been taken; nan where nothing moves or works."""
+        found = self._taken
+        error = None if found is None else found.error(np.array([found.missing]))
+        return float("nan") if error is None else float(error[0])
 
     def _marched(self) -> Iterator[MotionRows]:
         """The motion in blocks of rows, as they are reached; the report of the last one is that of
