@@ -328,9 +328,12 @@ class _ResponseBuilder:
         # moments, and orders of what is driven: rows may be taken block by block
         self.per_row = 2 + 8 * len(section.driven or ())
         clock = self._clock(path, section)
-        driven = build_inputs(
-            self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
-        ) or MotionInputs((), 1)
+        driven: MotionInputs | None = None
+        if section.driven:
+            driven = build_inputs(
+                self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
+            )
+        driven = driven or MotionInputs((), 1)
         self._check_ties(path, driven)
         self._check_jumps(path, driven)
         efforts = self._efforts(path, section, name)

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism import CrossingEnd, Span, read_for
+from mechkin_cli.mechanism import Span, read_for
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response.report import motion_of, under_way
-from mechkin_cli.response.rows import Prepared, RunEnd, block_of, run_end
+from mechkin_cli.response.rows import Prepared, RunEnd, block_of, run_end, why_held
 from mechkin_cli.response.runs import integrated, integrated_rows, prepare, read
-from mechkin_cli.sweep import Part, bends
+from mechkin_cli.sweep import Part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -99,19 +99,10 @@ class ResponseBlocks:
 
     @property
     def in_blocks(self) -> bool:
-        """Whether the rows are not held: there are many, and the motion goes on in one way. Behind
-        an impact, and up to a jump of a slope, it is another one; and which reactions are unique
-        where constraints are redundant goes by all rows."""
+        """Whether the rows are not held: there are many, and the motion goes on in one way."""
         one = self._one
-        stops = one.response.stops
-        limits = any(isinstance(stop, CrossingEnd) and stop.limit for stop in stops)
-        return (
-            one.response.rows > self.block_rows
-            and one.begun is not None
-            and not limits
-            and not bends(one.free.problem)
-            and not one.free.is_redundant
-        )
+        is_long = one.response.rows > self.block_rows
+        return is_long and one.begun is not None and not why_held(one)
 
     def parts(self) -> Iterator[Part]:
         """The rows in order, block by block; one block, where they are held."""

@@ -242,6 +242,14 @@ def test_too_many_rows_are_not_held(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sum(block.rows for block in model.stream(run="swing")) == 61
 
 
+def test_who_is_held_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = TEXTS["to the end"] + "limits: {O.theta: {min: -0.5, max: 1.5, restitution: 0.5}}\n"
+    monkeypatch.setattr(tolerances, "MOST_NUMBERS", 100)
+    model = mk.loads(text.split("tables:")[0] + "limits:" + text.split("limits:")[1])
+    with pytest.raises(mk.UsageError, match=r"held whole, as its limits .*: take a larger step"):
+        next(iter(model.stream(["O.theta"], run="swing")))
+
+
 def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:
     monkeypatch.setattr("sys.argv", ["mechkin", "analyze", *words])
     with pytest.raises(SystemExit) as ended:
