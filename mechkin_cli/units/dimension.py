@@ -12,14 +12,14 @@ from __future__ import annotations
 import operator
 from fractions import Fraction
 
-from mechkin_cli.record import dataclass
+from mechkin_cli.record import NamedTuple
 
 Exponent = int | Fraction
 
 
-@dataclass(frozen=True, slots=True)
-class Dimension:
-    """Exponents of the base dimensions; fractions only come from square roots."""
+class Dimension(NamedTuple):
+    """Exponents of the base dimensions; fractions only come from square roots. A tuple, as such are
+    keys of whatever is remembered, and hashed more often than anything else."""
 
     length: Exponent = 0
     mass: Exponent = 0
@@ -36,7 +36,7 @@ class Dimension:
         """Whether all exponents are zero; an angle is not dimensionless."""
         return not (self.length or self.mass or self.time or self.angle)
 
-    def __mul__(self, other: Dimension) -> Dimension:
+    def __mul__(self, other: Dimension) -> Dimension:  # type: ignore[override]
         return Dimension(*map(plain, map(operator.add, self.exponents, other.exponents)))
 
     def __truediv__(self, other: Dimension) -> Dimension:

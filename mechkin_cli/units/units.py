@@ -500,9 +500,10 @@ class UnitSystem:
         Raises:
             UnitError: the factor is outside the range of numbers (exponents far from any use).
         """
-        if dimension not in self._conversions:
-            self._conversions[dimension] = conversion(self.unit(dimension).factor)
-        return self._conversions[dimension]
+        known = self._conversions.get(dimension)
+        if known is None:
+            known = self._conversions[dimension] = conversion(self.unit(dimension).factor)
+        return known
 
 
 def field_unit(key: str, text: str) -> CompoundUnit:
