@@ -18,7 +18,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.forces import ForcesAt, FreePlace, summed
+from mechkin_cli.statics.forces import Forces, ForcesAt, FreePlace, summed
 from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search
 from mechkin_cli.statics.places import eigen
 
@@ -103,7 +103,7 @@ def held(balancing: Balancing, place: FreePlace) -> tuple[Search, Verdict]:
     """A place at which the loads do not balance and friction holds the mechanism, and its
     verdict: neither stiffness nor frequencies are told there."""
     forces = balancing.forces.at(place, np.zeros((balancing.forces.freedoms, 1)))
-    largest = balancing.largest(place)
+    largest = float(balancing.largest(FreePlace.many([place]))[0])
     coordinates, _ = balancing.named(place)
     found = Search(place, forces.forces[:, 0], largest, SearchEnd.FOUND, 0)
     verdict = Verdict(Stability.HELD, coordinates, np.nan, 0, np.nan, largest)
