@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
+_ENDS = tuple(TrackEnd)  # by their numbers: calling an enumeration takes longer than a step
+
 # The kernel's limits of a step along a path, by name.
 
 
@@ -174,7 +176,7 @@ def follow(
         guess,
         limit,
         reached,
-        TrackEnd(end),
+        _ENDS[end],
         steps,
         place,
         state,

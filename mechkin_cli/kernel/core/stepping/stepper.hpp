@@ -247,6 +247,7 @@ std::vector<char> upstream_blocks(const Plan& plan, const KernelUnit& unit);
 
 // The closing joints' angles and orientations of a plan, in the order of the joints.
 std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit);
+int slots_of(const std::vector<ClosingTurn>& turns);
 // The unknown angles of the tree's R and C; their slots follow those of the closing joints.
 std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit);
 // Numbers of a node's turns.
