@@ -57,6 +57,7 @@ def step_numbers(
         "radius": tolerances.SPECTRAL_RADIUS,
         "narrow": tolerances.NARROW_STEP,
         "arc_steps": tolerances.ARC_STEPS,
+        "arc_work": tolerances.ARC_WORK,
         "straight": straight,
         "iterations": tolerances.NEWTON_ITERATIONS,
         "same_line": tolerances.SAME_LINE,
