@@ -625,6 +625,7 @@ class StepLimits:
         radius: float,
         narrow: float,
         arc_steps: int,
+        arc_work: float,
         straight: bool,
     ) -> None: ...
 
