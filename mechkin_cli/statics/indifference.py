@@ -1,7 +1,10 @@
-"""Motions along which the loads balance, in a window of one coordinate.
+"""Motions along which the loads balance: each is one row of a window.
 
-A window is looked through in parts, and a motion may turn back at a dead centre and come again a
-turn later. Parts that share a place belong to one motion, which is one row.
+A window of one coordinate is looked through in parts, and a motion may turn back at a dead centre
+and come again a turn later. Parts that share a place belong to one motion (`Motions`).
+
+Of several freedoms a motion is followed from the first equilibrium that is found on it
+(`BalancedMotion`).
 """
 
 from __future__ import annotations
@@ -12,13 +15,17 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.search import pose_number
-from mechkin_cli.statics.places import Place
+from mechkin_cli.search import pose_keys, pose_number, same_poses
+from mechkin_cli.session import input_number, input_text
+from mechkin_cli.statics.forces import summed
+from mechkin_cli.statics.newton import search, slopes
+from mechkin_cli.statics.places import Place, eigen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from mechkin_cli.show import Floats
+    from mechkin_cli.statics.newton import Balancing, Search
     from mechkin_cli.statics.places import Statics
 
 
@@ -134,3 +141,99 @@ class Motions:
             return False
         layout, limit = self.statics.session.layout, tolerances.SAME_DEAD_CENTRE
         return pose_number(layout, one[:, None], other, limit) is not None
+
+
+def without_stiffness(balancing: Balancing, one: Search) -> Floats:
+    """Directions (directions, freedoms) of the chart about an equilibrium in which it has no
+    stiffness, as far as differences tell."""
+    count = balancing.forces.freedoms
+    found = slopes(balancing.forces, one.place)
+    if found is None:
+        return np.zeros((0, count))
+    matrix = found[1]
+    values, vectors = eigen(0.5 * (matrix + matrix.T))
+    size = max(float(np.max(np.abs(values))), one.largest)
+    return vectors.T[np.abs(values) <= tolerances.NO_STIFFNESS * size]
+
+
+class BalancedMotion(NamedTuple):
+    """A motion of several freedoms along which the loads balance.
+
+    Attributes:
+        first: the equilibrium from which it was followed, with its coordinates.
+        keys: (keys, places) of poses along it.
+        values: (freedoms, places) of the coordinates there.
+        freedoms: how many it has itself; of several only one place is known.
+    """
+
+    first: Floats
+    keys: Floats
+    values: Floats
+    freedoms: int
+
+    @classmethod
+    def along(
+        cls,
+        balancing: Balancing,
+        one: Search,
+        values: Floats,
+        directions: Floats,
+        ends: tuple[Floats, Floats],
+    ) -> BalancedMotion:
+        """The motion through an equilibrium, in both directions to the ends of the window or
+        around."""
+        layout = balancing.chosen.layout
+        own = pose_keys(layout, one.place.state[:, None])
+        keys, at = [own], [values]
+        for sign in (1.0, -1.0) if len(directions) == 1 else ():
+            place, direction = one.place, sign * directions[0]
+            closed = False
+            for number in range(tolerances.MOST_MOTION_STEPS):
+                beside = balancing.forces.at(place, direction[:, None] * tolerances.MOTION_STEP)
+                if not beside.good[0]:
+                    break
+                found = search(balancing, balancing.forces.moved(place, beside))
+                if not found.found:
+                    break
+                onward = without_stiffness(balancing, found)
+                if len(onward) != 1:
+                    break
+                way = summed(place.tangents * direction[:, None])
+                turned = summed((found.place.tangents * way).T)
+                direction = onward[0] if float(summed(turned * onward[0])) > 0.0 else -onward[0]
+                place = found.place
+                now = balancing.named(place)[0]
+                keys.append(pose_keys(layout, place.state[:, None]))
+                at.append(now)
+                low, high = ends
+                if (now < low).any() or (now > high).any():
+                    break
+                again = same_poses(own, keys[-1], 0.5 * tolerances.MOTION_STEP)[0, 0]
+                closed = bool(number > 2 and again)
+                if closed:
+                    break
+            if closed:
+                break
+        return cls(values, np.concatenate(keys, axis=1), np.stack(at, axis=1), len(directions))
+
+    def has(self, balancing: Balancing, one: Search, values: Floats) -> bool:
+        """Whether an equilibrium without stiffness in some direction lies on it."""
+        if self.freedoms > 1:
+            return True
+        key = pose_keys(balancing.chosen.layout, one.place.state[:, None])
+        same = same_poses(self.keys, key, tolerances.MOTION_STEP)[:, 0]
+        turns = np.rint((self.values - values[:, None]) / (2.0 * np.pi)).any(axis=0)
+        return bool((same & ~turns).any())
+
+    def words(self, balancing: Balancing) -> str:
+        """Through which place it goes, and how far."""
+        session = balancing.chosen
+
+        def at(number: int, value: float) -> str:
+            value = value if abs(value) > tolerances.EQUILIBRIUM_STEP else 0.0
+            return input_text(input_number(session.problem, session.layout, number, value))
+
+        place = ", ".join(at(k, float(value)) for k, value in enumerate(self.first))
+        if self.freedoms > 1:
+            return f"motions of {self.freedoms} freedoms through {place}"
+        return f"a motion through {place}"

@@ -14,7 +14,9 @@ from mechkin_cli.record import dataclass, field
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.session import input_unit, turn_of
 from mechkin_cli.statics.forces import FreePlace, determinant
+from mechkin_cli.statics.indifference import BalancedMotion, without_stiffness
 from mechkin_cli.statics.newton import Balancing, Search, slopes
+from mechkin_cli.statics.stability import is_indifferent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -31,6 +33,7 @@ class Known:
     window: tuple[Limit, ...]
     found: list[Search] = field(default_factory=list)
     is_folded: bool = False
+    motions: list[BalancedMotion] = field(default_factory=list)
     _values: list[Floats] = field(default_factory=list)
     _keys: list[Floats] = field(default_factory=list)
     _counted: int = 0
@@ -73,6 +76,8 @@ class Known:
         # turned into the window it may be known
         if inside is None or self._is_known(inside[0], inside[1]):
             return False
+        if self.balancing.forces.freedoms > 1 and self._lies_on_motion(*inside):
+            return False
         self.found.append(inside[0])
         self._values.append(inside[1])
         return True
@@ -91,6 +96,20 @@ class Known:
             not np.rint((self._values[k] - values) / (2.0 * np.pi)).any()
             for k in np.flatnonzero(same)
         )
+
+    def _lies_on_motion(self, one: Search, values: Floats) -> bool:
+        """Whether an equilibrium lies on a motion that is known, along which the loads balance; a
+        motion on which it is the first is followed."""
+        directions = without_stiffness(self.balancing, one)
+        if not len(directions):
+            return False
+        if any(motion.has(self.balancing, one, values) for motion in self.motions):
+            return True
+        if is_indifferent(self.balancing, one.place, directions[0]):
+            self.motions.append(
+                BalancedMotion.along(self.balancing, one, values, directions, self.ends)
+            )
+        return False
 
     def leave_out(self, lies_on_motion: Callable[[Search], bool]) -> None:
         """Forgets some equilibria."""
@@ -149,14 +168,21 @@ class Known:
         return place._replace(state=state, turns=slots)
 
     def notes(self, response: ResponseProblem) -> list[Diagnostic]:
-        """That whole turns were left out."""
+        """That whole turns were left out, and motions are one row each."""
+        notes = []
+        if self.motions:
+            some = [one.words(self.balancing) for one in self.motions[: tolerances.MOST_TOLD]]
+            more = len(self.motions) - len(some)
+            some += [f"along {more} more motions"] if more else []
+            text = f"the loads balance all along {', and '.join(some)}; each motion is one row"
+            notes.append(Diagnostic("indifferent", "note", text, response.place))
         if not self.is_folded:
-            return []
+            return notes
         text = (
             "equilibria that whole turns alone tell apart, at which the loads are the same, are "
             "one row, at the least angle in the window"
         )
-        return [Diagnostic("window-turns", "note", text, response.place)]
+        return [*notes, Diagnostic("window-turns", "note", text, response.place)]
 
 
 def _are_same(one: tuple[Floats, Floats], other: tuple[Floats, Floats], largest: float) -> bool:

@@ -85,7 +85,7 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
         stability = Stability.STABLE
     elif least < -error:
         stability = Stability.UNSTABLE
-    elif _is_indifferent(balancing, place, direction):
+    elif is_indifferent(balancing, place, direction):
         stability = Stability.INDIFFERENT
     if unsymmetric and stability is Stability.STABLE and _flutters(forces, place, matrix):
         stability = Stability.FLUTTERS
@@ -147,7 +147,7 @@ def _in_coordinates(matrix: Floats, rates: Floats) -> Floats | None:
     return symmetric
 
 
-def _is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -> bool:
+def is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -> bool:
     """Whether loads balance along a motion without stiffness, to both sides."""
     forces = balancing.forces
     reach = tolerances.INDIFFERENT_REACH * np.array([-1.0, -0.5, 0.5, 1.0])

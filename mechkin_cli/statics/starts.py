@@ -52,6 +52,8 @@ def from_starts(
         if not ended and places.starts >= tolerances.HOPELESS_STARTS:
             break
         enough = places.starts >= least and chance <= tolerances.WINDOW_CHANCE
+        # equilibria are not counted where they are no points
+        closed = closed and not known.motions
         if enough and not (closed and _is_odd(known)):
             break
     return _notes(response, known, _Count(places.starts, ended, since, chance), bool(closed))

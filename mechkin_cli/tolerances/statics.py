@@ -70,6 +70,21 @@ INDIFFERENT_REACH: Final = 0.1
 """How far along a motion without stiffness the loads are looked at, rad or length units: where they
 still balance there, the equilibrium is indifferent."""
 
+NO_STIFFNESS: Final = 1e-7
+"""A direction with less stiffness than this part of the largest force and stiffness may be that of
+a motion along which loads balance: differences over `NEWTON_DIFFERENCE` are right to eight
+digits."""
+
+MOTION_STEP: Final = 0.05
+"""Step along a motion on which loads balance, rad or length units. An equilibrium without stiffness
+whose pose is that near to one on the motion lies on it."""
+
+MOST_MOTION_STEPS: Final = 1000
+"""Steps along such a motion to one side: eight turns."""
+
+MOST_TOLD: Final = 4
+"""Motions that a note names one by one."""
+
 SAME_EQUILIBRIUM: Final = 1e-6
 """Two equilibria whose places differ by less, in parts of the size, are one: marginal ones are
 found to the cube root of rounding, 1e-5 of their curvature's reach."""

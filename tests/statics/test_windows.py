@@ -260,3 +260,53 @@ def test_circuits_between_two_values_of_a_window_are_found() -> None:
     assert r["row.event"].tolist() == ["stable", "unstable", "unstable", "stable"]
     (note,) = (note for note in r.diagnostics if note.code == "window-circuits")
     assert "1 of them at unknown circuits" in str(note.measured)
+
+
+@pytest.mark.parametrize("turns", [1, 2])
+@pytest.mark.parametrize("centre", [-1.0, -1.4])
+def test_a_motion_of_several_freedoms_that_balances_is_one_row(centre: float, turns: int) -> None:
+    # the second link bears nothing, or hangs at its own joint: it stands anywhere
+    mass = 0 if centre != -1.0 else 2
+    text = f"""
+format: 1
+plane: xy
+units: {{length: m, angle: deg, force: N}}
+links:
+  a: {{mass: 1, center_of_mass: [0, -0.5]}}
+  b: {{mass: {mass}, center_of_mass: [0, {centre}]}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0]}}
+  B: {{type: R, links: [a, b], point: [0, -1]}}
+loads:
+  - {{type: gravity, g: [0, -9.81]}}
+"""
+    m = mk.loads(text)
+    window = {"A.theta": (-180 * turns, 180 * turns), "B.theta": (-180, 180)}
+    e = m.equilibrium(["A.theta"], window=window)
+    found = np.sort(np.asarray(e["A.theta"]))
+    least = [-180, 0] if turns == 1 else [-360, -180]
+    np.testing.assert_allclose(found, least, atol=1e-7)
+    told = [one for one in e.diagnostics if one.code == "indifferent"]
+    assert len(told) == 1
+    assert "2 motions" in str(told[0]) or str(told[0]).count("a motion through") == 2
+
+
+def test_motions_that_balance_and_points_are_told_apart() -> None:
+    # a balanced wheel stands anywhere, a bob beside it at two places
+    text = """
+format: 1
+plane: xy
+units: {length: m, angle: deg, force: N}
+links: {wheel: {mass: 3, center_of_mass: [0, 0]}, bob: {mass: 1, center_of_mass: [2, -0.5]}}
+joints:
+  W: {type: R, links: [ground, wheel], point: [0, 0]}
+  B: {type: R, links: [ground, bob], point: [2, 0]}
+loads:
+  - {type: gravity, g: [0, -9.81]}
+"""
+    e = mk.loads(text).equilibrium(
+        ["B.theta", "row.event"], window={"W.theta": (-180, 180), "B.theta": (-180, 180)}
+    )
+    at = dict(zip(np.round(e["B.theta"], 6).tolist(), e["row.event"], strict=True))
+    assert sorted(at) == [-180, 0]
+    assert at[0].startswith("indifferent")
