@@ -88,6 +88,8 @@ class Curve:
         self.lost: list[float] = []
         self.at_dead_centres: list[float] = []
         self.motions = Motions(statics, self._inputs)
+        # values (places,), rising, states and turns of each branch in a cell
+        self.places: list[tuple[Floats, Floats, Floats]] = []
         self.incomplete = 0.0
         self.largest = 0.0
 
@@ -128,6 +130,8 @@ class Curve:
         end = cell + (direction > 0)
         first = float(place.inputs[self.statics.free[0]])
         way = self._stretch(first, float(self.values[end]), place)
+        up = np.s_[..., ::direction]
+        self.places.append((way.values[up], way.states[up], way.turns[up]))
         self._look_along(way)
         if way.is_whole:
             inputs = self._inputs(self.values[end : end + 1])[:, 0]

@@ -340,9 +340,8 @@ class Forces:
         count, session = u.shape[1], self.session
 
         def of_rows(array: Floats) -> Floats:
-            if array.ndim == 1:
-                return np.repeat(array, count).reshape(len(array), count)
-            return array
+            column = array[:, None] if array.ndim == 1 else array
+            return np.repeat(column, count, axis=1) if column.shape[1] == 1 else column
 
         state = of_rows(place.state)
         guess = session.moved_along(state, combined(place.tangents, u)) if u.any() else state
@@ -466,6 +465,22 @@ def orthonormal_each(rows: Floats, columns: int | None = None) -> tuple[Floats, 
         independent &= left > tolerances.RANK_ZERO * size
         basis[k] = basis[k] / np.where(independent, left, 1.0)
     return basis, independent
+
+
+def determinant(matrix: Floats) -> float:
+    """The determinant of a small matrix, by elimination."""
+    rows, found = [row[:] for row in matrix.tolist()], 1.0
+    for k in range(len(rows)):
+        pivot = max(range(k, len(rows)), key=lambda i: abs(rows[i][k]))
+        if pivot != k:
+            rows[k], rows[pivot], found = rows[pivot], rows[k], -found
+        if rows[k][k] == 0.0:
+            return 0.0
+        found *= rows[k][k]
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    return found
 
 
 def _length(row: Floats) -> Floats:

@@ -13,8 +13,8 @@ from mechkin_cli.mechanism import Limit
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.session import input_unit, turn_of
-from mechkin_cli.statics.forces import FreePlace
-from mechkin_cli.statics.newton import Balancing, Search, determinant, slopes
+from mechkin_cli.statics.forces import FreePlace, determinant
+from mechkin_cli.statics.newton import Balancing, Search, slopes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.record import replace
 from mechkin_cli.statics.curve import Curve
+from mechkin_cli.statics.friction import FrictionRest, RestInterval
 from mechkin_cli.statics.known import Known
 from mechkin_cli.statics.newton import Balancing
 from mechkin_cli.statics.places import Statics
@@ -31,8 +32,8 @@ def in_window(one: Prepared) -> EquilibriumResult:
     statics = Statics(session, range(len(response.independent)))
     assert response.search is not None
     known = Known(balancing, response.search.window)
-    if statics.count == 1:
-        curve = Curve(balancing, statics, known)
+    curve = Curve(balancing, statics, known) if statics.count == 1 else None
+    if curve is not None:
         curve.look()
         notes = curve.notes(response)
     else:
@@ -40,9 +41,14 @@ def in_window(one: Prepared) -> EquilibriumResult:
     notes = [*notes, *known.notes(response)]
     judgements = [(found, judged(balancing, found)) for found in known.found]
     judgements.sort(key=lambda pair: pair[1].coordinates.tolist())
+    rests: list[RestInterval | None] = []
+    if curve is not None and response.frictions:
+        rest = FrictionRest(statics, response, response.search.window[0])
+        judgements, rests = rest.rows(balancing, judgements, curve.places)
+        notes = [*notes, *rest.notes(rests)]
     if not judgements:
         notes = [*notes, _none(response)]
-    return EquilibriumResult(response, balancing, start, judgements, notes)
+    return EquilibriumResult(response, balancing, start, judgements, notes, rests)
 
 
 def _none(response: ResponseProblem) -> Diagnostic:
