@@ -3,7 +3,8 @@
     python -m benchmarks.equilibria [--rounds N]
 
 Printed are the time of the kernel's calls for one equilibrium with its verdict and their number,
-the whole time of the search, and the time of a row of a sweep at rest in parts of that of the same
+the whole time of the search, the time of windows of three freedoms in parts of that of the one
+equilibrium, and the time of a row of a sweep at rest in parts of that of the same
 row driven, for sweeps of one turn with several steps. Runs take turns, so that a slow moment of the
 machine meets each, and the least time of the processor counts.
 """
@@ -18,7 +19,7 @@ import numpy as np
 
 from mechkin_cli import statics
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.model.model import Model, loads
+from mechkin_cli.model.model import Model, load, loads
 from mechkin_cli.response import prepare
 from mechkin_cli.session import kernel_run, session as session_module
 
@@ -106,6 +107,45 @@ def one_equilibrium(rounds: int) -> None:
     print(f"  {1e6 * whole:.0f} us in all")
 
 
+def windows(rounds: int) -> None:
+    """Of three blocks that fall without end, and of three pendulums on each other."""
+    weight = {"type": "gravity", "g": [0, -9.81, 0]}
+    base: dict[str, object] = {"format": 1, "units": {"angle": "rad"}, "loads": [weight]}
+    links = {name: {"mass": 1, "center_of_mass": [0, -k - 0.4, 0]} for k, name in enumerate("abc")}
+    slides = {
+        name.upper(): {
+            "type": "P",
+            "links": ["ground", name],
+            "point": [0, 0, 0],
+            "axis": [0, 1, 0],
+        }
+        for name in "abc"
+    }
+    turns = {
+        joint: {"type": "R", "links": list(pair), "point": [0, -k, 0], "axis": [0, 0, 1]}
+        for k, (joint, pair) in enumerate(
+            zip("ABC", (("ground", "a"), ("a", "b"), ("b", "c")), strict=True)
+        )
+    }
+    model = rcsr()
+    cases = [
+        ("three falling blocks", slides, "s", 1.0),
+        ("a chain of three", turns, "theta", np.pi),
+    ]
+    for words, joints, coordinate, half in cases:
+        chain = load({**base, "links": links, "joints": joints})
+        window = {f"{joint}.{coordinate}": (-half, half) for joint in joints}
+        best, one = np.inf, np.inf
+        for _ in range(rounds):
+            begin = process_time()
+            found = chain.equilibrium(window=window)
+            middle = process_time()
+            model.equilibrium("one")
+            best, one = min(best, middle - begin), min(one, process_time() - middle)
+        number = int(np.count_nonzero(found.result.solved))
+        print(f"{words}: {number} equilibria, {best:.2f} s, {best / one:.0f} times the one above")
+
+
 def rows_at_rest(rounds: int, step: float) -> None:
     """Of the lever with a bob that hangs from it."""
     count = round(360 / step) + 1
@@ -132,6 +172,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=ROUNDS)
     rounds = parser.parse_args().rounds
     one_equilibrium(rounds)
+    windows(min(rounds, 2))
     for step in STEPS:
         rows_at_rest(rounds, step)
 

@@ -1,9 +1,9 @@
-"""Windows of several freedoms: turns that springs count, loops, inches, and searches side by side,
-against references of their own."""
+"""Windows of several freedoms: turns that springs count, inches, and searches side by side, against
+closed forms."""
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from math import cos, degrees, pi, sin
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from mechkin_cli.statics.newton import Balancing, search, searches
 from mechkin_cli.statics.places import Place, Statics
 
 G = 9.81
-INCH, POUND = 0.0254, 0.45359237
+INCH, POUND, STANDARD_GRAVITY = 0.0254, 0.45359237, 9.80665
 
 
 def two_pendulums(stiffness: tuple[float, float]) -> dict[str, Any]:
@@ -66,6 +66,26 @@ def test_equilibria_in_several_turns_are_all_pairs_of_those_of_each_freedom() ->
     assert np.array(found) == pytest.approx(np.array(wanted), abs=1e-8)
     # where turns count those of even index need not be as many as those of odd index
     assert "window-missing" not in [note.code for note in r.diagnostics]
+
+
+def test_files_in_inches_pounds_and_degrees_have_the_same_equilibria() -> None:
+    stiffness = 1.2, 2.1
+    first = roots(lambda t: stiffness[0] * t - G * sin(t), -6, 7)
+    second = roots(lambda t: stiffness[1] * t + G * cos(t), -6, 7)
+    force = POUND * STANDARD_GRAVITY
+    inches = two_pendulums((stiffness[0] / (force * INCH), stiffness[1] / (force * INCH)))
+    inches["units"] = {"length": "in", "mass": "lbm", "force": "lbf"}
+    for link in inches["links"].values():
+        link["mass"] /= POUND
+        link["center_of_mass"] = [x / INCH for x in link["center_of_mass"]]
+    inches["loads"][0]["g"] = [0, -G / INCH, 0]
+    ends = degrees(-6), degrees(7)
+    r = mk.load(inches).equilibrium(window={"A.theta": ends, "B.theta": ends})
+    found = np.radians(np.stack([r["A.theta"], r["B.theta"]], axis=1))
+    assert len(found) == len(first) * len(second)
+    for x in first:
+        for y in second:
+            assert np.abs(found - [x, y]).max(axis=1).min() < 1e-9
 
 
 def test_searches_side_by_side_find_what_each_finds_alone() -> None:
