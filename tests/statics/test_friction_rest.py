@@ -77,6 +77,17 @@ def test_a_falling_coefficient_holds_by_its_static_value() -> None:
     assert rests(found) == [pytest.approx((-HOLDS, HOLDS), abs=1e-11)]
 
 
+def test_an_equilibrium_from_the_drawing_has_its_interval_in_tables() -> None:
+    columns = ["A.theta", "row.rest_from", "row.rest_to"]
+    for tables in ({}, {"tables": [{"name": "own", "run": "e", "columns": columns}]}):
+        m = mk.load(pendulum() | {"equilibria": {"e": {}}} | tables)
+        (table,) = m.equilibrium("e").tables
+        labels = [column.label for column in table.columns]
+        assert labels[-2:] == columns[1:]
+        values = [float(column.values[0]) for column in table.columns[-2:]]
+        assert values == pytest.approx([-HOLDS, HOLDS], abs=1e-11)
+
+
 def test_oil_does_not_hold() -> None:
     film = {"type": "damper", "joint": "A", "coordinate": "theta", "damping": 5}
     r = mk.load(pendulum(film)).equilibrium(near={"A.theta": 5})
