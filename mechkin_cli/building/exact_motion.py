@@ -102,8 +102,9 @@ def start_motion(
         recorder: holds the recorded numbers.
         held: coordinates that are held, as written.
     """
-    in_si: dict[str, Any] = {"time": float(response.moments.values[0])}
-    written: dict[str, Any] = {"time": float(response.moments.written[0])}
+    first = response.moments.part(slice(1))
+    in_si: dict[str, Any] = {"time": float(first.values[0])}
+    written: dict[str, Any] = {"time": float(first.written[0])}
     for name, one in held.items():
         path: Path = (response.section, response.name, "driven", name, "at")
         dimension = dimension_of(name.rpartition(".")[2])

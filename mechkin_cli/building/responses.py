@@ -327,9 +327,12 @@ class _ResponseBuilder:
         # moments, and orders of what is driven: rows may be taken block by block
         self.per_row = 2 + 8 * len(section.driven or ())
         clock = self._clock(path, section)
-        driven = build_inputs(
-            self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
-        ) or MotionInputs((), 1)
+        driven: MotionInputs | None = None
+        if section.driven:
+            driven = build_inputs(
+                self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
+            )
+        driven = driven or MotionInputs((), 1)
         self._check_ties(path, driven)
         self._check_jumps(path, driven)
         efforts = self._efforts(path, section, name)
@@ -508,10 +511,11 @@ class _ResponseBuilder:
         place = (*path, "time")
         errors = self.fields.error_count
         if isinstance(section.time, TimeSection):
-            clock = spaced_moments(self.fields, place, section.time, self.per_row)
+            held = bool(section.driven)
+            clock = spaced_moments(self.fields, place, section.time, self.per_row, held=held)
         else:
             clock = self._listed(place, section.time)
-        if clock.time.written.size < 2 and self.fields.error_count == errors:
+        if clock.time.rows < 2 and self.fields.error_count == errors:
             text = "a response needs two moments, its start and a later one"
             self.fields.error("one-moment", place, text, "give time: {from, to, step}")
         return clock
@@ -583,7 +587,7 @@ class _ResponseBuilder:
         if self.fields.error_count > errors:
             return value
         most = tolerances.MOST_RESPONSE_STEPS
-        span = float(moments.values[-1] - moments.values[0])
+        span = moments.duration
         if not value > 0.0:
             self.fields.error("zero-step", path, "a step takes a positive time", "write 1e-3 s")
         elif span > most * value:
