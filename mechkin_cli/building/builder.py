@@ -150,6 +150,11 @@ def build(
         problem = build_problem(fields, file)
     problem = replace(problem, hold_idle=file.idle == "hold")
     problem = _with_definitions(fields, file, problem)
+    if file.equilibria and not fields.error_count:
+        from mechkin_cli.building.start_graphs import with_starts
+
+        # what rows of equilibria have goes by their coordinates
+        problem = with_starts(problem)
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
     balances = _balances(fields, file, problem)

@@ -33,8 +33,7 @@ def with_graphs(fields: Fields, problem: Problem) -> tuple[Problem, Graphs]:
     """The problem whose responses have their idle freedoms held, and are held to the family that
     their coordinates name, and their graphs; links that would spin are noted."""
     responses, graphs = {}, Graphs()
-    for name, response in problem.responses.items():
-        response = _with_independent(problem, response)
+    for name, response in with_starts(problem).responses.items():
         first = response_problem(problem, response)
         first = replace(first, held=held_of(first))
         response = replace(response, held=first.held)
@@ -49,6 +48,12 @@ def with_graphs(fields: Fields, problem: Problem) -> tuple[Problem, Graphs]:
             response = replace(response, mechanism=settled(first).mechanism)
         responses[name] = response
     return replace(problem, responses=responses), graphs
+
+
+def with_starts(problem: Problem) -> Problem:
+    """The problem with a start of each of its equilibria."""
+    started = {name: _with_independent(problem, one) for name, one in problem.responses.items()}
+    return replace(problem, responses=started)
 
 
 def _with_independent(problem: Problem, response: ResponseProblem) -> ResponseProblem:

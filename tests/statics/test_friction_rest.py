@@ -77,6 +77,17 @@ def test_a_falling_coefficient_holds_by_its_static_value() -> None:
     assert rests(found) == [pytest.approx((-HOLDS, HOLDS), abs=1e-11)]
 
 
+def test_an_equilibrium_from_the_drawing_has_its_interval_in_tables() -> None:
+    columns = ["A.theta", "row.rest_from", "row.rest_to"]
+    for tables in ({}, {"tables": [{"name": "own", "run": "e", "columns": columns}]}):
+        m = mk.load(pendulum() | {"equilibria": {"e": {}}} | tables)
+        (table,) = m.equilibrium("e").tables
+        labels = [column.label for column in table.columns]
+        assert labels[-2:] == columns[1:]
+        values = [float(column.values[0]) for column in table.columns[-2:]]
+        assert values == pytest.approx([-HOLDS, HOLDS], abs=1e-11)
+
+
 def test_oil_does_not_hold() -> None:
     film = {"type": "damper", "joint": "A", "coordinate": "theta", "damping": 5}
     r = mk.load(pendulum(film)).equilibrium(near={"A.theta": 5})
@@ -411,3 +422,102 @@ def test_friction_by_reactions_that_are_not_unique_is_told() -> None:
     flat["loads"][0]["g"] = [0, -G]
     r = mk.load(flat).equilibrium(near={"A.theta": 0})
     assert rests(r) == [pytest.approx((low, high), abs=1e-9)]
+
+
+def driven_effort(document: dict[str, Any], coordinate: str, way: list[float]) -> float:
+    """The least effort, forward or back, of a slow drive at the end of a way, in parts of what
+    friction makes of it."""
+    joint = coordinate.partition(".")[0]
+    efforts = []
+    for rate in (1e-7, -1e-7):
+        inputs = {coordinate: {"values": way, "rate": rate}}
+        found = mk.load(document | {"motion": {"inputs": inputs}}).analyze([f"{joint}.effort"])
+        efforts.append(float(found[f"{joint}.effort"][-1]))
+    return min(map(abs, efforts)) / abs(efforts[0] - efforts[1])
+
+
+def test_wheels_whose_teeth_push_apart_and_lose_power() -> None:
+    """Against slow drives at both ends, on either wheel."""
+    wheels = {
+        "format": 1,
+        "units": {"angle": "rad"},
+        "links": {
+            "a": {"mass": 2, "center_of_mass": [0.1, 0, 0]},
+            "b": {"mass": 3, "center_of_mass": [0.4, 0.2, 0]},
+        },
+        "joints": {
+            "A": {"type": "R", "links": ["ground", "a"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+            "B": {"type": "R", "links": ["ground", "b"], "point": [0.3, 0, 0], "axis": [0, 0, 1]},
+        },
+        "couplings": {
+            "G": {
+                "type": "gear",
+                "joints": ["A", "B"],
+                "teeth": [20, 40],
+                "pressure_angle": 0.4,
+                "efficiency": 0.95,
+            }
+        },
+        "loads": [
+            {"type": "gravity", "g": [0, -G, 0]},
+            {"type": "friction", "joint": "A", "coefficient": 0.3, "radius": 0.03},
+            {"type": "friction", "joint": "B", "coefficient": 0.2, "radius": 0.04},
+        ],
+    }
+    for coordinate, reach in (("A.theta", 2 * pi), ("B.theta", pi)):
+        r = mk.load(wheels).equilibrium(window={coordinate: (-reach, reach)})
+        checked = 0
+        for at, ends in zip(r[coordinate], rests(r), strict=True):
+            for end in ends:
+                if abs(end) < reach - 1e-9:
+                    assert driven_effort(wheels, coordinate, [float(at), end]) < 1e-10
+                    checked += 1
+        assert checked >= 4
+
+
+@pytest.mark.parametrize(("part", "locks"), [(1.01, True), (0.99, False)])
+def test_a_worm_locks_itself(part: float, locks: bool) -> None:
+    """Where the coefficient is cos(pressure angle) tan(lead angle)."""
+    lead, pressure = atan(1 / 5), radians(20)
+    coefficient = part * cos(pressure) * sin(lead) / cos(lead)
+    worm = {
+        "format": 1,
+        "units": {"length": "mm", "angle": "deg", "force": "N"},
+        "links": {"worm": {}, "wheel": {"mass": 1, "center_of_mass": [100, 100, 0]}},
+        "joints": {
+            "A": {"type": "R", "links": ["ground", "worm"], "point": [0, 0, 0], "axis": [1, 0, 0]},
+            "B": {
+                "type": "R",
+                "links": ["ground", "wheel"],
+                "point": [0, 125, 0],
+                "axis": [0, 0, 1],
+            },
+        },
+        "couplings": {
+            "W": {
+                "type": "gear",
+                "joints": ["A", "B"],
+                "teeth": [2, 40],
+                "radii": ["25 mm", "100 mm"],
+                "helix": 90 - degrees(lead),
+                "pressure_angle": "20 deg",
+                "friction": coefficient,
+            }
+        },
+        "loads": [{"type": "gravity", "g": [0, -9810, 0]}],
+    }
+    r = mk.load(worm).equilibrium(window={"B.theta": (-10, 10)})
+    assert r["row.event"].tolist() == (["held by friction"] if locks else [""])
+    assert ("no-equilibrium" in told(r)) == (not locks)
+
+
+def test_lanes_and_threads_do_not_matter() -> None:
+    m = mk.load(SliderCrank(random.Random(3)).document())
+    window = {"O.theta": (-pi, pi)}
+    one, *others = (
+        m.equilibrium(window=window, lanes=lanes, threads=threads)
+        for lanes, threads in ((2, 1), (4, 1), (0, 2))
+    )
+    for other in others:
+        for name in ("O.theta", "row.rest_from", "row.rest_to"):
+            assert other[name].tobytes() == one[name].tobytes()

@@ -8,7 +8,8 @@
 //
 // No drive is in this balance, so it does not matter which input is thought to drive. The z with this sum are a simplex,
 // which the map z := P mu N(z) / sum s mu N(z) takes into itself: there is a solution wherever friction can take power.
-// It is found by Newton's method on z and the share together, by that map where Newton's step leads nowhere.
+// It is found by Newton's method on z and the share together, by that map where Newton's step leads nowhere. What teeth
+// push apart with goes by the reactions as friction does, whole and without power.
 #pragma once
 
 #include "forces/friction.hpp"
@@ -21,7 +22,7 @@ constexpr double SHARE_GAIN = 0.5;
 
 // Friction forces of a trial, as in Rubbing; and what the map makes of them, in r.step.
 struct ShareTrial {
-  Pack share, left;
+  Pack share, left, size;  // what is left of the equations, and what it counts beside
 };
 // From the forces in r.force: r.step are those of the map, r.normal the largest that there may be.
 inline ShareTrial try_share(const Plan& p, Rubbing& r, const Pack* largest, const Pack* slip, Pack power) {
@@ -29,14 +30,17 @@ inline ShareTrial try_share(const Plan& p, Rubbing& r, const Pack* largest, cons
   for (int k = 0; k < n; ++k) r.coefficient[k] = largest[k];
   load_contacts<0, false>(p, r);
   Pack taken = 0.0;
+  Pack fastest = 0.0, pushes = 0.0;
   for (int k = 0; k < n; ++k) {
     r.normal[k] *= largest[k];
     taken += slip[k] * r.normal[k];
+    fastest = max(fastest, slip[k]);
+    if (p.friction[k].pushes) pushes += r.normal[k];
   }
-  ShareTrial found = {power / taken, Pack(0.0)};
+  ShareTrial found = {power / taken, Pack(0.0), abs(power) + fastest * pushes};
   for (int k = 0; k < n; ++k) {
-    r.step[k] = found.share * r.normal[k];
-    const Pack part = slip[k] * abs(r.step[k] - r.force[k]);
+    r.step[k] = p.friction[k].pushes ? r.normal[k] : found.share * r.normal[k];
+    const Pack part = fastest * abs(r.step[k] - r.force[k]);
     found.left = select(part <= found.left, found.left, part);  // a NaN wins
   }
   return found;
@@ -48,14 +52,14 @@ inline void newton_share(const Plan& p, Rubbing& r, const Pack* largest, const P
   const int n = p.frictions, m = n + 1;
   for (int k = 0; k < n; ++k) {
     r.force[k] = at[k];
-    r.coefficient[k] = share * largest[k];
+    r.coefficient[k] = p.friction[k].pushes ? largest[k] : share * largest[k];
   }
   load_contacts<0, false>(p, r);
   differentiate_loads<0>(p, r);
   Pack rest = power;
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) r.border[k * m + j] = r.matrix[k * n + j];
-    r.border[k * m + n] = -(largest[k] * r.normal[k]);
+    r.border[k * m + n] = p.friction[k].pushes ? Pack(0.0) : -(largest[k] * r.normal[k]);
     r.border[n * m + k] = slip[k];
     rest -= slip[k] * at[k];
   }
@@ -85,24 +89,25 @@ inline Pack rest_share(const Plan& p, const Workspace& w) {
     const Friction& f = p.friction[k];
     const JointPlace& j = p.place[f.place];
     const Motion &a = motion_of(w, j.first), &b = motion_of(w, j.second);
-    slip[k] = per * ::power(b.acceleration - a.acceleration, r.drag[k]);
+    slip[k] = f.pushes ? Pack(0.0) : per * ::power(b.acceleration - a.acceleration, r.drag[k]);
     largest[k] = f.pushes ? Pack(1.0) : Pack(f.at_rest);
     able += slip[k] * largest[k];
   }
   const Pack nothing = Pack(NOTHING_WORKS) * r.level;
   const Mask idle = ~(able > Pack(0.0));
   const Pack start = power / select(idle, Pack(1.0), able);
-  for (int k = 0; k < n; ++k) r.force[k] = start * largest[k];
-  ShareTrial best = {Pack(__builtin_nan("")), Pack(__builtin_inf())}, at = best;
+  for (int k = 0; k < n; ++k) r.force[k] = p.friction[k].pushes ? Pack(0.0) : start * largest[k];
+  ShareTrial best = {Pack(__builtin_nan("")), Pack(__builtin_inf()), Pack(0.0)}, at = best;
   Mask stepped = all_lanes(false), done = idle;
-  const Pack size = abs(power);
   for (int iteration = 0; iteration < SHARE_ITERATIONS; ++iteration) {
     const ShareTrial now = try_share(p, r, largest, slip, power);
     const Mask leads = ~stepped | (now.left < Pack(SHARE_GAIN) * at.left);
     const Mask better = ~done & (now.left < best.left);
     best.share = select(better, now.share, best.share);
     best.left = select(better, now.left, best.left);
-    done = done | (best.left <= Pack(FRICTION_TIGHT) * size) | (~leads & (best.left <= Pack(FRICTION_STALLED) * size));
+    best.size = select(better, now.size, best.size);
+    done = done | (best.left <= Pack(FRICTION_TIGHT) * best.size) |
+           (~leads & (best.left <= Pack(FRICTION_STALLED) * best.size));
     if (all(done)) break;
     for (int k = 0; k < n; ++k) {
       kept[k] = select(leads, r.force[k], kept[k]);
@@ -116,7 +121,8 @@ inline Pack rest_share(const Plan& p, const Workspace& w) {
     stepped = leads;
   }
   const Pack far = select(power < Pack(0.0), Pack(-__builtin_inf()), Pack(__builtin_inf()));
-  Pack share = select(best.left <= Pack(FRICTION_ACCEPT) * size, best.share, Pack(__builtin_nan("")));
+  const Pack size = abs(power);
+  Pack share = select(best.left <= Pack(FRICTION_ACCEPT) * best.size, best.share, Pack(__builtin_nan("")));
   share = select(idle, far, share);
   // no load that could be told from rounding, against friction that cannot
   const Mask light = (size <= nothing) & ~(abs(share) <= Pack(1.0));
