@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import ZERO, effort_quantity
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Ask, RowInputs, turn_of
-from mechkin_cli.statics.forces import combined
+from mechkin_cli.statics.forces import combined, summed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -165,6 +166,35 @@ class Statics:
             states = self.session.moved_along(states, combined(tangents, steps[moved]))
         turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
         return self.forces(inputs, states, turns, time)
+
+    def beside_dead_centre(self, place: Place, known: Place) -> list[str]:
+        """Names of coordinates that tell places apart about `place`, where the free ones stand near
+        a dead centre there, though not at a `known` place; none where they do not."""
+        session, layout = self.session, self.session.layout
+        tangents = self.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
+        sizes = np.sqrt(summed((tangents * tangents).T))
+        far = ~(sizes <= 1.0 / tolerances.NEAR_DEAD_CENTRE)
+        if not far.any():
+            return []
+        # what moves most there, in place of one of the free coordinates
+        way = tangents[int(np.argmax(np.where(np.isfinite(sizes), sizes, -1.0)))]
+        scalars = [
+            (layout.column(number, freedom), f"{edge.joint.name}.{name}")
+            for number, edge in enumerate(session.graph.edges)
+            if not edge.hung
+            for name, freedom in edge.joint.type.scalars.items()
+        ]
+        moved, name = max(scalars, key=lambda scalar: abs(float(way[scalar[0]])))
+        columns = [layout.column(*session.graph.inputs[k]) for k in self.free]
+        if moved in columns:
+            return []
+        before = self.tangents(known.inputs[:, None], known.state[:, None])[:, :, 0]
+        # which of them: that which leaves the others most independent
+        replaced = int(np.argmax(np.abs(before[:, moved])))
+        named = [session.problem.motion.inputs[k] for k in self.free]
+        names = [f"{each.joint}.{each.coordinate}" for each in named]
+        names[replaced] = name
+        return names
 
     def place(self, inputs: Floats, state: Floats) -> Place:
         """A closed place at some inputs, to which nothing was followed."""

@@ -170,10 +170,11 @@ class _Branch:
         if found.good[0]:
             self.least[row] = _least(found.stiffness[:, :, 0])
 
-    def lost(self, row: int, at: str | None = None) -> End:
-        """That the branch could not be followed beyond a row, to which place at most."""
+    def lost(self, row: int, at: str | None = None, hint: str | None = None) -> End:
+        """That the branch could not be followed beyond a row, to which place at most, and what may
+        be done."""
         text = f"the branch of equilibria could not be followed beyond row {row + 1}"
-        hint = (
+        hint = hint or (
             "see whether the loads have a value and a direction there, or end the sweep before it"
         )
         return Status.branch_lost, Diagnostic("rest-lost", "error", text, None, at, hint=hint)

@@ -18,8 +18,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.forces import summed
-from mechkin_cli.statics.newton import determinant
+from mechkin_cli.statics.forces import determinant, summed
 from mechkin_cli.statics.places import Place
 
 if TYPE_CHECKING:

@@ -212,13 +212,19 @@ class Result:
         for driven in self.problem.motion.inputs:
             for name, (_, written) in driven.orders.items():
                 if name in known and name != driven.name:
-                    rates[name] = np.where(self.solved, written, np.nan)
+                    rates[name] = self._where_solved(written)
         return rates
 
     @cached_property
     def solved(self) -> Bools:
         """Rows that have a position (rows,)."""
         return has_solution(self.status)
+
+    def _where_solved(self, values: Floats) -> Floats:
+        """The values with nan in rows without a solution, and themselves where there are none."""
+        if np.count_nonzero(self.solved) == self.solved.size:
+            return values
+        return np.where(self.solved, values, np.nan)
 
     @property
     def complete(self) -> bool:
@@ -371,7 +377,7 @@ class Result:
             if name == driven.name:
                 return driven.values
             if name.startswith(driven.name) and name in driven.orders:
-                return np.where(self.solved, driven.orders[name][0], np.nan)
+                return self._where_solved(driven.orders[name][0])
         return None
 
     def read(self, wanted: Iterable[Wanted]) -> None:

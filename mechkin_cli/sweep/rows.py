@@ -236,17 +236,17 @@ def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) 
         outputs[output] = np.where(reached, values, outputs[output])
     rests: Columns = {}
     for angles in (tree, closing):
-        if not angles:
-            continue
-        names, slots, counters = map(list, zip(*angles, strict=True))
-        rest, turns = outputs[slots], rows.turns[counters]
-        if angles is closing:
-            continuous = continuous_angle(rest, turns)
-        else:
-            continuous = rest + turns * (2.0 * pi)
-        outputs[slots] = continuous
-        turned = ((continuous != rest) & reached).any(axis=1)
-        rests |= {names[k]: rest[k] for k in np.flatnonzero(turned)}
+        for name, slot, counter in angles:
+            rest, turns = outputs[slot].copy(), rows.turns[counter]
+            if angles is closing:
+                outputs[slot] = continuous_angle(rest, turns)
+            elif np.count_nonzero(turns):
+                outputs[slot] += turns * (2.0 * pi)
+            else:  # of long runs most parts have none; as with turns no zero has a sign
+                outputs[slot] += 0.0
+                continue
+            if np.count_nonzero((outputs[slot] != rest) & reached):
+                rests[name] = rest
     return rests
 
 

@@ -41,7 +41,7 @@ from mechkin_cli.units import (
     Conversion,
     Dimension,
 )
-from mechkin_cli.verdict import Proof, Status, has_solution
+from mechkin_cli.verdict import Proof, Status, are, has_solution
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -467,16 +467,19 @@ def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:
             0,
             f"write {value.components_of(layout.expression.text)}",
         )
-    in_si = np.array(np.broadcast_to(value, (source.rows,)), dtype=np.float64)
-    # the conversion may hand back the array itself, so it works on the copy
+    in_si = np.asarray(np.broadcast_to(value, (source.rows,)), dtype=np.float64)
     values = source.units.from_si(in_si, quantity.dimension)
+    if values is in_si:  # the unit is that of SI, and the array may be the source's
+        values = in_si.copy()
     # infinite is only what grows without bound towards a dead centre at which its row stands
     infinite = np.isinf(values)
-    if (source.status != Status.ok).any():
-        values[~solved_rows(source) | infinite & (source.status != Status.dead_centre)] = np.nan
-    elif infinite.any():
-        values[infinite] = np.nan
     unit = source.units.label(quantity.dimension)
+    if are(source.status, Status.ok).all():
+        if infinite.any():
+            values[infinite] = np.nan
+        return TableColumn(layout.label, unit, values, layout.decimals)
+    is_unbounded = are(source.status, Status.dead_centre)
+    values[~solved_rows(source) | infinite & ~is_unbounded] = np.nan
     return column_of_numbers(layout.label, unit, values, layout.decimals)
 
 

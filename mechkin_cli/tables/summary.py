@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import (
     AT,
@@ -217,14 +218,17 @@ class RunningStatistics:
 
     def add(self, values: Floats, places: Floats) -> None:
         """Adds rows: values (rows,), nan without a cell, at places (rows,) along the way."""
-        there = ~np.isnan(values)
-        count = int(np.count_nonzero(there))
-        self._rows += count
-        if count:
-            words = self._words | ({"max", "min"} if "range" in self._words else set())
-            for word in self._extremes.keys() & words:
-                self._find(word, np.abs(values) if word == "peak" else values, places)
-            self._infinite += int(np.count_nonzero(np.isinf(values)))
+        found = _kernel.extremes(np.ascontiguousarray(values))
+        cells, infinite, largest, smallest = found
+        self._rows += cells
+        self._infinite += infinite
+        if cells:
+            if "range" in self._words or "max" in self._words:
+                self._take("max", largest, values, places)
+            if "range" in self._words or "min" in self._words:
+                self._take("min", smallest, values, places)
+            if "peak" in self._words:
+                self._take("peak", max(largest, -smallest), values, places)
         if self._mean is not None:
             self._mean.add(values, places)
         if self._squares is not None:
@@ -246,14 +250,14 @@ class RunningStatistics:
             infinite=self._infinite,
         )
 
-    def _find(self, word: str, values: Floats, places: Floats) -> None:
-        """Takes the block's extreme, with its first place, where it is the run's."""
+    def _take(self, word: str, found: float, values: Floats, places: Floats) -> None:
+        """Takes an extreme of some rows, with its first place, where it is the run's."""
         own = self._extremes[word].value
-        found = float((np.fmin if word == "min" else np.fmax).reduce(values)) + 0.0
         better = found < own if word == "min" else found > own
         if better or np.isnan(own):
-            place = float(places[np.flatnonzero(values == found)[0]])
-            self._extremes[word] = Extreme(found, place)
+            sizes = np.abs(values) if word == "peak" else values
+            # 0 has no sign
+            self._extremes[word] = Extreme(found + 0.0, float(places[np.argmax(sizes == found)]))
 
 
 class _RunningMean:

@@ -68,8 +68,14 @@ SAME_EQUILIBRIUM: Final = 1e-6
 found to the cube root of rounding, 1e-5 of their curvature's reach."""
 
 WINDOW_PLACES: Final = 48
-"""Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for: a
-circuit of the mechanism that lies within one of them is missed."""
+"""Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for."""
+
+CIRCUIT_STARTS: Final = 128
+"""Random starts with the coordinate free, taken at once: 106 that end within the window at known
+circuits bring the chance of another down to `WINDOW_CHANCE`."""
+
+MOST_CIRCUIT_STARTS: Final = 2048
+"""Such starts at most, where few of them end within the window."""
 
 WINDOW_SHIFT: Final = 0.0431
 """By how much of such a part its ends stand off even values, and those of the window off its ends:
@@ -189,8 +195,13 @@ is (2 e / step)^2, so that those nearer than 5e-6 count as crossing."""
 LEAST_ARC: Final = 1e-9
 """Shortest step by arclength: below, branches that meet are not told apart."""
 
-NEAR_FOLD: Final = 1e-3
-"""Where the inputs move by less than this part of the branch's length, it turns back there."""
+NEAR_DEAD_CENTRE: Final = 0.05
+"""Coordinates that tell places worse than others by this part stand near a dead centre: slopes by
+them are differences over `NEWTON_DIFFERENCE`, which have no values closer to one than that, where
+rates are its square root."""
+
+FOLD_STEP: Final = 1e-5
+"""Arclength within which a fold is located; its inputs are then right to the cube of that."""
 
 ARC_COSINE: Final = 0.9
 """Least cosine between the directions of a branch a step apart."""
@@ -198,3 +209,30 @@ ARC_COSINE: Final = 0.9
 TURNED_BALANCE: Final = 1e-9
 """Force left at an equilibrium whose angles were turned by whole turns, in parts of the largest of
 one load, up to which it is one still: turns add rounding alone, a spring that counts them 2 pi."""
+
+# Rest by friction.
+
+ABOUT_TO_MOVE: Final = 1e-30
+"""Acceleration that tells the way in which a mechanism at rest would begin to move: its square is
+still a number, and what it does to inertia is far below the rounding of loads."""
+
+REST_INTERVAL_STEP: Final = 2.0**-7
+"""Step, rad or length units, by which the places of an interval of rest are looked at: where the
+mechanism slips within less, and rests again, is missed."""
+
+REST_INTERVAL_PLACES: Final = 32
+"""Places that are looked at in one call."""
+
+REST_DEAD_CENTRE_PLACES: Final = 24
+"""Places towards a dead centre that ends an interval, each half as far from it as the last one."""
+
+REST_EDGE_PART: Final = 2.0**-10
+"""Parts of a bracket beside the root of a line through its ends at which it is cut: it is a
+thousand times shorter where the line is that good."""
+
+SAME_REST_SHARE: Final = 1e-6
+"""Shares of friction at one pose that differ by more are of other loads, as of springs that count
+turns."""
+
+MOST_REST_INTERVALS: Final = 4
+"""Intervals of rest whose ends are told one by one."""

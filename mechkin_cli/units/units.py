@@ -432,6 +432,9 @@ class UnitSystem:
     _units: dict[Dimension, CompoundUnit] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+    _labels: dict[Dimension, str] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @classmethod
     def from_mapping(cls, texts: Mapping[str, str | None]) -> UnitSystem:
@@ -470,7 +473,10 @@ class UnitSystem:
 
     def label(self, dimension: Dimension) -> str:
         """The unit of a dimension as text: `in`, `rad/s`, `lbm*in^2/s^2`; empty for a number."""
-        return str(self.unit(dimension))
+        known = self._labels.get(dimension)
+        if known is None:
+            known = self._labels[dimension] = str(self.unit(dimension))
+        return known
 
     def factor(self, dimension: Dimension) -> float:
         """The SI value of one file unit of this dimension."""

@@ -1,12 +1,14 @@
-// Python's view of numbers and tables as text; where another thread changes the numbers meanwhile, the text is of
+// Python's view of numbers and tables as text, and of how far numbers reach; where another thread changes the numbers meanwhile, the text is of
 // either. A column is a float64 array; with a style of its own a tuple
 // (array, scientific, decimals, trimmed); one of words a pair of int32 codes and the texts they stand for.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "arithmetic/extremes.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "text/table_text.hpp"
@@ -215,6 +217,11 @@ std::vector<std::string> decimal_texts(const nb::tuple& column) {
   return column_texts(table.columns.front(), table.rows);
 }
 
+std::tuple<std::size_t, std::size_t, double, double> extremes_of(const Row& numbers) {
+  const Extremes found = extremes(numbers.data(), numbers.shape(0));
+  return {found.cells, found.infinite, found.largest, found.smallest};
+}
+
 }  // namespace
 
 void bind_text(nb::module_& m) {
@@ -225,5 +232,6 @@ void bind_text(nb::module_& m) {
         "decimal_comma"_a = false, "threads"_a = 1);
   m.def("json_lines", &json, "keys"_a, "columns"_a, "first"_a, "room"_a, "whole"_a, "threads"_a = 1);
   m.def("markdown_text", &markdown, "headers"_a, "columns"_a, "threads"_a = 1);
+  m.def("extremes", &extremes_of, "numbers"_a);
   m.def("json_list", &json_list, "column"_a, "threads"_a = 1);
 }
