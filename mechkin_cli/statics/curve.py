@@ -208,7 +208,7 @@ class Curve:
             pairs = (self.between + 1) * (self.between + 2)
             doubt = float(functions.log(pairs / tolerances.SEARCH_DOUBT))
             self.chance = min(1.0, doubt / max(since, 1))
-            if self.chance <= tolerances.WINDOW_CHANCE:
+            if self.chance <= tolerances.CIRCUIT_CHANCE:
                 return
 
     def _box(self, free: Session) -> Within:
@@ -416,11 +416,9 @@ class Curve:
         starts = self.motions.starts
         if not starts:
             return
-        self.known.found = [
-            one
-            for one in self.known.found
-            if not self.motions.has(self.balancing.uncharted(self.statics, one.place))
-        ]
+        self.known.leave_out(
+            lambda one: self.motions.has(self.balancing.uncharted(self.statics, one.place))
+        )
         for place in starts:
             found = self._found(place)
             if found is not None:

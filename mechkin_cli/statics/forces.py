@@ -27,6 +27,10 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, Chart, RowInputs, continuous_angle
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
     from mechkin_cli.plan import Readout
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
@@ -45,11 +49,26 @@ class FreePlace(NamedTuple):
         turns: (turn slots,) of cut joints, as `RowInputs.turned`.
         tangents: (freedoms, columns) orthonormal rates of the columns that the loops allow; the
             directions of the chart about the place.
+
+    Of many places each array has them as its last axis.
     """
 
     state: Floats
     turns: Floats
     tangents: Floats
+
+    def at(self, numbers: NDArray[np.intp] | Bools | int) -> FreePlace:
+        """Some of many places, or one."""
+        return FreePlace(*(array[..., numbers] for array in self))
+
+    def each(self, times: int) -> FreePlace:
+        """Many places, each some times after the other."""
+        return FreePlace(*(np.repeat(array, times, axis=-1) for array in self))
+
+    @classmethod
+    def many(cls, places: Sequence[FreePlace]) -> FreePlace:
+        """Single places as many."""
+        return cls(*(np.stack(arrays, axis=-1) for arrays in zip(*places, strict=True)))
 
 
 class DrivenAt(NamedTuple):
@@ -81,12 +100,30 @@ class DrivenAt(NamedTuple):
 class ForcesAt(NamedTuple):
     """What would have to act along the chart at some places: forces (freedoms, places), states
     (states, places), turns (turn slots, places), and which of them are closed and have loads with
-    values (places,)."""
+    values (places,); about many places with an axis of these before the last."""
 
     forces: Floats
     states: Floats
     turns: Floats
     good: Bools
+
+    def of_many(self, count: int) -> ForcesAt:
+        """The same with an axis of so many places, about each of which are as many."""
+        forces, states, turns, good = self
+        each = good.size // count
+        return ForcesAt(
+            forces.reshape(-1, count, each),
+            states.reshape(len(states), count, each),
+            turns.reshape(len(turns), count, each),
+            good.reshape(count, each),
+        )
+
+    def at(self, numbers: slice) -> ForcesAt:
+        """Some of the places, or of those about each of many."""
+        forces, states, turns, good = self
+        return ForcesAt(
+            forces[..., numbers], states[..., numbers], turns[..., numbers], good[..., numbers]
+        )
 
 
 class Derivative(NamedTuple):
@@ -124,15 +161,56 @@ class Forces:
         Raises:
             ValueError: the directions do not determine the rates there.
         """
-        n = self.freedoms
-        zeros = np.zeros((n, n))
+        found, good = self.charted(FreePlace.many([FreePlace(state, turns, directions)]))
+        if not good[0]:
+            raise ValueError("the directions do not determine the rates at this place")
+        return found.at(0)
+
+    def charted(self, places: FreePlace) -> tuple[FreePlace, Bools]:
+        """Many places with charts of their own, from directions that are independent on the free
+        rates there; and where these determine the rates (places,)."""
+        n, count = self.freedoms, places.state.shape[1]
+        zeros = np.zeros((n, n * count))
         # rates of driven inputs would add to those along the chart
         still = self.driven._replace(rates=np.zeros_like(self.driven.rates))
-        batch = self._run(still, FreePlace(state, turns, directions), zeros, np.eye(n), zeros)
+        unit = np.tile(np.eye(n), count)
+        batch = self._run(still, places.each(n), zeros, unit, zeros, derivatives=True)
         assert batch.first is not None
-        if not (np.isfinite(batch.first).all() and batch.good.all()):
-            raise ValueError("the directions do not determine the rates at this place")
-        return FreePlace(batch.states[:, 0], turns, orthonormal(batch.first.T))
+        rates = batch.first.reshape(-1, count, n)
+        good = np.logical_and.reduce(np.isfinite(rates), axis=(0, 2))
+        good = good & np.logical_and.reduce(batch.good.reshape(count, n), axis=1)
+        tangents, independent = orthonormal_each(
+            np.where(good[:, None], rates, 0.0).transpose(2, 0, 1)
+        )
+        states = batch.states.reshape(-1, count, n)[:, :, 0]
+        return FreePlace(states, places.turns, tangents), good & independent
+
+    def about(self, places: FreePlace, u: Floats) -> ForcesAt:
+        """The forces at rest at some places u (freedoms, places, each) of the charts about many."""
+        n, count, each = u.shape
+        found = self.at(places.each(each), np.ascontiguousarray(u.reshape(n, -1)))
+        return found.of_many(count)
+
+    def along(
+        self, places: FreePlace, steps: Floats, parts: Floats, beside: Floats
+    ) -> tuple[ForcesAt, ForcesAt, Floats]:
+        """The forces at `parts` (parts,) of a step (freedoms, places) from each of many places, and
+        `beside` (freedoms, others) its end; and the free rates (freedoms, columns, places) at its
+        end, where one direction of the chart after the other has unit rate."""
+        n, count = steps.shape
+        at_end = np.concatenate([beside, np.zeros((n, n))], axis=1)
+        whole = steps[:, :, None]
+        u = np.concatenate([whole * parts, whole + at_end[:, None, :]], axis=2)
+        rates = np.zeros_like(u)
+        rates[:, :, -n:] = np.eye(n)[:, None, :]
+        each = u.shape[2]
+        u, rates = (np.ascontiguousarray(array.reshape(n, -1)) for array in (u, rates))
+        rows = places.each(each)
+        batch = self._run(self.driven, rows, u, rates, np.zeros_like(u), derivatives=True)
+        assert batch.first is not None
+        found = self._forces_at(rows, batch).of_many(count)
+        first = batch.first.reshape(-1, count, each)[:, :, -n:].transpose(2, 0, 1)
+        return found.at(slice(parts.size)), found.at(slice(parts.size, -n)), first
 
     def at(
         self,
@@ -142,8 +220,9 @@ class Forces:
         accelerations: Floats | None = None,
         driven: DrivenAt | None = None,
     ) -> ForcesAt:
-        """The forces at places u (freedoms, places) of the chart about `place`, at rest unless
-        rates and accelerations (freedoms, places) are given; turns are continuous from `place`.
+        """The forces at places u (freedoms, places) of the chart about `place`, or each about one
+        of many, at rest unless rates and accelerations (freedoms, places) are given; turns are
+        continuous from `place`.
 
         `driven`: other inputs; each of its numbers may be one for all places (inputs,) or one for
         each (inputs, places).
@@ -156,6 +235,9 @@ class Forces:
             zeros if rates is None else rates,
             zeros if accelerations is None else accelerations,
         )
+        return self._forces_at(place, batch)
+
+    def _forces_at(self, place: FreePlace, batch: Batch) -> ForcesAt:
         assert batch.chart_forces is not None
         good = batch.good & np.isfinite(batch.chart_forces).all(axis=0)
         if batch.undefined is not None:
@@ -164,11 +246,13 @@ class Forces:
 
     def read(self, place: FreePlace, readout: Readout) -> Floats:
         """Outputs (slots, freedoms) at a place, where one direction of its chart after the other
-        has unit rate and the driven inputs are at rest."""
+        has unit rate and the driven inputs are at rest; of many places one after the other."""
         n = self.freedoms
-        zeros = np.zeros((n, n))
+        count = 1 if place.state.ndim == 1 else place.state.shape[1]
+        zeros = np.zeros((n, n * count))
         still = self.driven._replace(rates=np.zeros_like(self.driven.rates))
-        batch = self._run(still, place, zeros, np.eye(n), zeros, readout)
+        rows = place if place.state.ndim == 1 else place.each(n)
+        batch = self._run(still, rows, zeros, np.tile(np.eye(n), count), zeros, readout)
         assert batch.outputs is not None
         return batch.outputs
 
@@ -187,6 +271,31 @@ class Forces:
         found = self.at(place, np.zeros_like(unit), accelerations=unit)
         matrix = found.forces[:, 1:] - found.forces[:, :1]
         return 0.5 * (matrix + matrix.T)
+
+    def stiffness_and_inertia(
+        self, place: FreePlace, beside: Floats
+    ) -> tuple[Derivative, Floats, ForcesAt]:
+        """Both at rest, and the forces at places `beside` (freedoms, places), where one call of the
+        kernel is enough for all."""
+        n = self.freedoms
+        unit = np.concatenate([np.zeros((n, 1)), np.eye(n)], axis=1)
+        others: ForcesAt | None = None
+
+        def along(u: Floats) -> ForcesAt:
+            nonlocal others
+            if others is not None:
+                return self.at(place, u)
+            places = np.concatenate([u, np.zeros_like(unit), beside], axis=1)
+            accelerations = np.zeros_like(places)
+            accelerations[:, u.shape[1] : u.shape[1] + n + 1] = unit
+            found = self.at(place, places, accelerations=accelerations)
+            others = found.at(slice(u.shape[1], None))
+            return found.at(slice(u.shape[1]))
+
+        stiffness = differentiated(along, n)
+        assert others is not None
+        pushed = others.forces[:, 1 : n + 1] - others.forces[:, :1]
+        return stiffness, 0.5 * (pushed + pushed.T), others.at(slice(n + 1, None))
 
     def stiffness(self, place: FreePlace) -> Derivative:
         """df/du (freedoms, freedoms) at rest along the chart; with the drives' rates where these
@@ -223,18 +332,22 @@ class Forces:
         seconds: Floats,
         readout: Readout | None = None,
         demand: Demand | None = None,
+        *,
+        derivatives: bool = False,
     ) -> Batch:
         """Closes places of the chart with a motion along it, and balances the forces, unless
         something else is demanded."""
         count, session = u.shape[1], self.session
 
         def of_rows(array: Floats) -> Floats:
-            column = array[:, None] if array.ndim == 1 else array
-            return np.repeat(column, count, axis=1) if column.shape[1] == 1 else column
+            if array.ndim == 1:
+                return np.repeat(array, count).reshape(len(array), count)
+            return array
 
         state = of_rows(place.state)
         guess = session.moved_along(state, combined(place.tangents, u)) if u.any() else state
-        directions = of_rows(place.tangents.ravel())
+        shape = (place.tangents.shape[0] * place.tangents.shape[1], *place.tangents.shape[2:])
+        directions = of_rows(place.tangents.reshape(shape))
         none = np.zeros((0, count))
         chart = Chart(directions, rates, seconds, none)
         rows = RowInputs(
@@ -254,14 +367,15 @@ class Forces:
         )
         if demand is not None:
             return session.run(rows, Ask(demand, readout))
-        return session.run(rows, Ask(_BALANCED, readout, derivatives=True, balance=True))
+        return session.run(rows, Ask(_BALANCED, readout, derivatives=derivatives, balance=True))
 
     def _turned(self, place: FreePlace, batch: Batch) -> Floats:
         """The turns (turn slots, places) of places, continuous from those of another."""
         assert batch.turns is not None
         turns = batch.turns.copy()
         for slot, width in self._widths:
-            own, known = turns[slot : slot + width], place.turns[slot : slot + width, None]
+            own, known = turns[slot : slot + width], place.turns[slot : slot + width]
+            known = known[:, None] if known.ndim == 1 else known
             if width == 1:
                 turns[slot] = continuous_angle(own[0], known[0])
             else:
@@ -316,31 +430,42 @@ def summed(terms: Floats) -> Floats:
 
 
 def combined(basis: Floats, weights: Floats) -> Floats:
-    """Sums (columns, places) of rows of a basis (numbers, columns) by weights (numbers, places)."""
+    """Sums (columns, places) of rows of a basis (numbers, columns), or of one for each place
+    (numbers, columns, places), by weights (numbers, places)."""
     total = np.zeros((basis.shape[1], weights.shape[1]))
     for row, weight in zip(basis, weights, strict=True):
-        total = total + row[:, None] * weight
+        total = total + (row[:, None] if row.ndim == 1 else row) * weight
     return total
 
 
 def orthonormal(rows: Floats) -> Floats:
-    """An orthonormal basis (numbers, columns) of the span of independent rows, by two passes of
-    Gram and Schmidt.
+    """An orthonormal basis (numbers, columns) of the span of independent rows.
 
     Raises:
         ValueError: the rows are not independent, to rounding.
     """
+    basis, independent = orthonormal_each(rows[:, :, None])
+    if not independent[0]:
+        raise ValueError("the directions are not independent")
+    return basis[:, :, 0]
+
+
+def orthonormal_each(rows: Floats, columns: int | None = None) -> tuple[Floats, Bools]:
+    """Orthonormal bases (numbers, columns, places) of the spans of rows, by two passes of Gram and
+    Schmidt; and where the rows are independent (places,), to rounding. Where only so many `columns`
+    are given, further ones go along."""
     basis = np.array(rows, dtype=np.float64)
+    own = basis[:, :columns]
+    independent = np.ones(rows.shape[2], dtype=bool)
     for k in range(len(basis)):
-        size = _length(basis[k])
+        size = _length(own[k])
         for _ in range(2):
-            for before in basis[:k]:
-                basis[k] = basis[k] - summed(before * basis[k]) * before
-        left = _length(basis[k])
-        if not left > tolerances.RANK_ZERO * size:
-            raise ValueError("the directions are not independent")
-        basis[k] = basis[k] / left
-    return basis
+            for before in range(k):
+                basis[k] = basis[k] - summed(own[before] * own[k]) * basis[before]
+        left = _length(own[k])
+        independent &= left > tolerances.RANK_ZERO * size
+        basis[k] = basis[k] / np.where(independent, left, 1.0)
+    return basis, independent
 
 
 def determinant(matrix: Floats) -> float:

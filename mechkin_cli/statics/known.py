@@ -13,13 +13,14 @@ from mechkin_cli.mechanism import Limit
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.session import input_unit, turn_of
-from mechkin_cli.statics.forces import determinant
+from mechkin_cli.statics.forces import FreePlace, determinant
 from mechkin_cli.statics.newton import Balancing, Search, slopes
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from mechkin_cli.mechanism import ResponseProblem
     from mechkin_cli.show import Floats
-    from mechkin_cli.statics.forces import FreePlace
 
 
 @dataclass
@@ -30,6 +31,8 @@ class Known:
     window: tuple[Limit, ...]
     found: list[Search] = field(default_factory=list)
     is_folded: bool = False
+    _values: list[Floats] = field(default_factory=list)
+    _keys: list[Floats] = field(default_factory=list)
     _counted: int = 0
     _excess: int = 0
 
@@ -54,31 +57,53 @@ class Known:
 
     def add(self, one: Search) -> bool:
         """Takes an equilibrium, if it lies in the window and is not known; whether it is new."""
-        inside = self._within(one)
-        if inside is None:
+        return self.add_all([one])[0]
+
+    def add_all(self, several: Sequence[Search]) -> list[bool]:
+        """Takes equilibria one after the other; which of them are new."""
+        if not several:
+            return []
+        values = self.balancing.named_each(FreePlace.many([one.place for one in several]))[0]
+        return [self._add(one, at) for one, at in zip(several, values.T, strict=True)]
+
+    def _add(self, one: Search, values: Floats) -> bool:
+        if self._is_known(one, values):
             return False
-        if self.found:
-            layout, limit = self.balancing.chosen.layout, tolerances.SAME_EQUILIBRIUM
-            poses = np.stack([other.place.state for other in self.found], axis=1)
-            same = same_poses(
-                pose_keys(layout, poses), pose_keys(layout, inside.place.state[:, None]), limit
-            )[:, 0]
-            # the same pose some turns further, where other loads balance, is another equilibrium
-            at = self._values(inside)
-            for k in np.flatnonzero(same):
-                if not np.rint((self._values(self.found[k]) - at) / (2.0 * np.pi)).any():
-                    return False
-        self.found.append(inside)
+        inside = self._within(one, values)
+        # turned into the window it may be known
+        if inside is None or self._is_known(inside[0], inside[1]):
+            return False
+        self.found.append(inside[0])
+        self._values.append(inside[1])
         return True
 
-    def _values(self, one: Search) -> Floats:
-        return self.balancing.named(one.place)[0]
+    def _is_known(self, one: Search, values: Floats) -> bool:
+        """Whether an equilibrium with some values of the coordinates is known."""
+        if not self.found:
+            return False
+        layout, limit = self.balancing.chosen.layout, tolerances.SAME_EQUILIBRIUM
+        key = pose_keys(layout, one.place.state[:, None])
+        for other in self.found[len(self._keys) :]:
+            self._keys.append(pose_keys(layout, other.place.state[:, None])[:, 0])
+        same = same_poses(np.stack(self._keys, axis=1), key, limit)[:, 0]
+        # the same pose some turns further, where other loads balance, is another equilibrium
+        return any(
+            not np.rint((self._values[k] - values) / (2.0 * np.pi)).any()
+            for k in np.flatnonzero(same)
+        )
 
-    def _within(self, one: Search) -> Search | None:
-        """An equilibrium whose angles are turned down to the least values in the window, as far as
-        the loads and their slopes are the same there; None outside."""
+    def leave_out(self, lies_on_motion: Callable[[Search], bool]) -> None:
+        """Forgets some equilibria."""
+        kept = [k for k, one in enumerate(self.found) if not lies_on_motion(one)]
+        self.found = [self.found[k] for k in kept]
+        self._values = [self._values[k] for k in kept]
+        self._keys = []
+
+    def _within(self, one: Search, values: Floats) -> tuple[Search, Floats] | None:
+        """An equilibrium, and its values, whose angles are turned down to the least values in the
+        window, as far as the loads and their slopes are the same there; None outside."""
         session, (low, high) = self.balancing.chosen, self.ends
-        values, slack = self._values(one).copy(), tolerances.SAME_EQUILIBRIUM
+        values, slack = values.copy(), tolerances.SAME_EQUILIBRIUM
         place, here = one.place, None
         for k, item in enumerate(session.problem.motion.inputs[: values.size]):
             turns = float(np.ceil((low[k] - slack - values[k]) / (2.0 * np.pi)))
@@ -98,7 +123,17 @@ class Known:
             values[k] += 2.0 * np.pi * turns
         if not ((values >= low - slack) & (values <= high + slack)).all():
             return None
-        return one._replace(place=place)
+        return one._replace(place=place), values
+
+    def repeats(self, one: Search) -> bool:
+        """Whether the loads are the same at a place and a turn further in each of the window's
+        angles: no spring counts their turns."""
+        here = slopes(self.balancing.forces, one.place)
+        for k in range(len(self.window)):
+            there = slopes(self.balancing.forces, self._turned(one.place, k, 1.0))
+            if here is None or there is None or not _are_same(here, there, one.largest):
+                return False
+        return True
 
     def _turned(self, place: FreePlace, number: int, turns: float) -> FreePlace:
         """A place with one of the window's angles some whole turns further."""

@@ -71,7 +71,7 @@ def _near(one: Prepared) -> EquilibriumResult:
     statics = Statics(one.chosen, range(len(response.independent)))
     begin = statics.place(one.chosen.inputs.values[:, 0], one.start.state)
     try:
-        place = balancing.charted(statics, begin)
+        place = balancing.charted(statics, begin, one.begun.tangents)
     except ValueError:
         return EquilibriumResult(response, balancing, one.start, [], [_dead_start(response)])
     found = search(balancing, place)

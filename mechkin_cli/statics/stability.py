@@ -18,7 +18,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.forces import Forces, FreePlace, summed
+from mechkin_cli.statics.forces import Forces, ForcesAt, FreePlace, summed
 from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search
 from mechkin_cli.statics.places import eigen
 
@@ -33,6 +33,7 @@ class Stability(Enum):
     UNSTABLE = "unstable"
     MARGINAL = "marginal"
     INDIFFERENT = "indifferent"
+    FLUTTERS = "unstable by flutter"
     HELD = "held by friction"
     UNKNOWN = "not known"
 
@@ -57,7 +58,9 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
     """The verdict on an equilibrium that was found."""
     forces, place = balancing.forces, found.place
     coordinates, rates = balancing.named(place)
-    derivative = forces.stiffness(place)
+    # of one freedom it is known which way no push comes back
+    beside = _FOLDED if forces.freedoms == 1 else np.zeros((forces.freedoms, 0))
+    derivative, inertia, near = forces.stiffness_and_inertia(place, beside)
     matrix, nothing = derivative.matrix, np.nan
     if not np.isfinite(matrix).all():
         return Verdict(Stability.UNKNOWN, coordinates, nothing, 0, nothing)
@@ -75,16 +78,20 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
         least = float(np.min(creeping[0]))
     stability = Stability.MARGINAL
     if not unsymmetric and abs(least) > error:
-        error = max(error, _fold_stiffness(forces, place, direction, size))
+        if forces.freedoms > 1:
+            near = forces.at(place, direction[:, None] * _FOLDED)
+        error = max(error, _fold_stiffness(near, direction, size))
     if least > error:
         stability = Stability.STABLE
     elif least < -error:
         stability = Stability.UNSTABLE
     elif _is_indifferent(balancing, place, direction):
         stability = Stability.INDIFFERENT
+    if unsymmetric and stability is Stability.STABLE and _flutters(forces, place, matrix):
+        stability = Stability.FLUTTERS
     frequency = nothing
     if stability is Stability.STABLE and not unsymmetric:
-        frequency = _lowest_frequency(symmetric, forces.inertia(place))
+        frequency = _lowest_frequency(symmetric, inertia)
     along = int(np.argmax(np.abs(summed(rates.T * direction[:, None]))))
     named = _in_coordinates(symmetric, rates)
     length = forces.session.layout.length
@@ -96,26 +103,29 @@ def held(balancing: Balancing, place: FreePlace) -> tuple[Search, Verdict]:
     """A place at which the loads do not balance and friction holds the mechanism, and its
     verdict: neither stiffness nor frequencies are told there."""
     forces = balancing.forces.at(place, np.zeros((balancing.forces.freedoms, 1)))
-    largest = balancing.largest(place)
+    largest = float(balancing.largest(FreePlace.many([place]))[0])
     coordinates, _ = balancing.named(place)
     found = Search(place, forces.forces[:, 0], largest, SearchEnd.FOUND, 0)
     verdict = Verdict(Stability.HELD, coordinates, np.nan, 0, np.nan, largest)
     return found, verdict
 
 
-def _fold_stiffness(forces: Forces, place: FreePlace, direction: Floats, size: float) -> float:
-    """The stiffness up to which a place is not told from a fold.
+_FOLDED = np.array([[-1.0, 0.0, 1.0]]) * tolerances.NEWTON_DIFFERENCE
+"""Steps from a place by which it is told from a fold."""
 
-    Along a direction the force is k u + c u^2 / 2 about the place: it vanishes again at -2 k / c,
-    and between both it comes to k^2 / (2 c). Where that balances to rounding, the place may be
-    where k is zero.
+
+def _fold_stiffness(near: ForcesAt, direction: Floats, size: float) -> float:
+    """The stiffness up to which a place is not told from a fold, from the forces near it in a
+    direction.
+
+    Along this the force is k u + c u^2 / 2 about the place: it vanishes again at -2 k / c, and
+    between both it comes to k^2 / (2 c). Where that balances to rounding, the place may be where k
+    is zero.
     """
-    step = tolerances.NEWTON_DIFFERENCE
-    beside = forces.at(place, direction[:, None] * np.array([-step, 0.0, step]))
-    if not beside.good.all():
+    if not near.good.all():
         return 0.0
-    before, here, behind = (float(summed(direction * beside.forces[:, k])) for k in range(3))
-    bend = abs(before - 2.0 * here + behind) / (step * step)
+    before, here, behind = (float(summed(direction * near.forces[:, k])) for k in range(3))
+    bend = abs(before - 2.0 * here + behind) / tolerances.NEWTON_DIFFERENCE**2
     return sqrt(2.0 * bend * tolerances.EQUILIBRIUM_BALANCE * size)
 
 
@@ -153,6 +163,32 @@ def _is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -
         if np.max(np.abs(moved - wanted)) > 0.5 * np.max(np.abs(wanted)):
             return False
     return True
+
+
+def _flutters(forces: Forces, place: FreePlace, matrix: Floats) -> bool:
+    """Whether a small motion grows that does not creep: an eigenvalue of M s^2 + D s + K has a real
+    part above zero. Motions without mass do not flutter; where some have none, nothing is told."""
+    count = forces.freedoms
+    masses, damping = forces.inertia(place), forces.damping(place).matrix
+    if not float(np.min(eigen(masses)[0])) > tolerances.MASSLESS * float(np.max(np.abs(masses))):
+        return False
+    system = np.zeros((2 * count, 2 * count))
+    system[:count, count:] = np.eye(count)
+    for column in range(count):
+        for block, part in ((0, matrix), (count, damping)):
+            right = (-part[:, column]).tolist()
+            solved = eliminated(masses.tolist(), right, tolerances.MASSLESS)
+            if solved is None or not np.isfinite(solved).all():
+                return False
+            system[count:, block + column] = solved
+    # rates in parts of what the stiffness makes of them
+    pace = sqrt(float(np.max(np.abs(system[count:, :count]))))
+    if not pace > 0.0:
+        return False
+    system[count:, :count] /= pace
+    system[:count, count:] *= pace
+    values = _kernel.eigen(np.ascontiguousarray(system))
+    return values is not None and float(np.max(values[0])) > tolerances.FLUTTER * pace
 
 
 def _lowest_frequency(matrix: Floats, masses: Floats) -> float:

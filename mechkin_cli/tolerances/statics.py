@@ -59,6 +59,13 @@ UNSYMMETRIC_STIFFNESS: Final = 1e-8
 """A stiffness that is unsymmetric by more than this part of its largest entry is of loads without a
 potential: rounding and differences leave less."""
 
+MASSLESS: Final = 1e-12
+"""An eigenvalue of the inertia below this part of its largest entry is of a motion without mass."""
+
+FLUTTER: Final = 1e-6
+"""Real parts of eigenvalues above this part of the fastest are of motions that grow: two that meet,
+as at the load of flutter, are off by the root of the rounding of forces and of their slopes."""
+
 INDIFFERENT_REACH: Final = 0.1
 """How far along a motion without stiffness the loads are looked at, rad or length units: where they
 still balance there, the equilibrium is indifferent."""
@@ -72,7 +79,7 @@ WINDOW_PLACES: Final = 48
 
 CIRCUIT_STARTS: Final = 128
 """Random starts with the coordinate free, taken at once: 106 that end within the window at known
-circuits bring the chance of another down to `WINDOW_CHANCE`."""
+circuits bring the chance of another down to `CIRCUIT_CHANCE`."""
 
 MOST_CIRCUIT_STARTS: Final = 2048
 """Such starts at most, where few of them end within the window."""
@@ -88,13 +95,27 @@ WINDOW_SAMPLES: Final = 16
 """Places of a branch between two values of the window, at which forces are taken: two equilibria
 nearer to each other than that are seen where the force comes near to zero between them."""
 
-WINDOW_STARTS: Final = 64
+WINDOW_STARTS: Final = 512
 """Starts of a search in a window of several freedoms, at least."""
 
-WINDOW_CHANCE: Final = 0.05
-"""The chance that one more search finds another equilibrium, at which a search in a window ends."""
+HOPELESS_STARTS: Final = 256
+"""Starts after which a search in a window ends if none of them came to an equilibrium."""
 
-MOST_WINDOW_STARTS: Final = 2048
+WINDOW_BATCH: Final = 128
+"""Searches that go side by side: more share no more of a call's cost."""
+
+SETTLED_START: Final = 8
+"""Every so many starts one first goes down: of chains and loops of two and three freedoms those
+that go straight find all stable places, too, and alone the saddles."""
+
+WINDOW_CHANCE: Final = 0.02
+"""The chance that one more search finds another equilibrium, at which a search in a window ends:
+saddles of loops are met by one start in fifty and less."""
+
+CIRCUIT_CHANCE: Final = 0.05
+"""The same of random starts for circuits, which take most of the time of a window."""
+
+MOST_WINDOW_STARTS: Final = 4096
 """Starts of a search in a window of several freedoms, at most."""
 
 MOST_SETTLING_STEPS: Final = 30
@@ -236,3 +257,15 @@ turns."""
 
 MOST_REST_INTERVALS: Final = 4
 """Intervals of rest whose ends are told one by one."""
+
+# Balance in double-double.
+
+BALANCE_CORRECTIONS: Final = 10
+"""Corrections of a place: each leaves 1e-8 of the one before, or what the place leaves squared."""
+
+REPEATED_BALANCE: Final = 1e-30
+"""Corrections below this, rad or length units, are rounding of double-doubles."""
+
+BALANCED_PLACE: Final = 1e-24
+"""Corrections that stay above this, rad or length units, are of a place that a stiffness near zero
+hardly tells: true errors of doubles would not be seen beside them."""

@@ -7,6 +7,7 @@ import math
 import random
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -331,3 +332,118 @@ def stationary_of_arm(own: SprungArm, starts: int = 12) -> list[NDArray[np.float
         if all(np.abs(np.remainder(x - y + math.pi, TURN) - math.pi).max() > 1e-4 for y in places):
             places.append(x)
     return places
+
+
+def five_bar(rng: random.Random) -> tuple[str, list[Callable[[NDArray[np.float64]], float]]]:
+    """A plane five-bar with weights at all bars and a spring from a coupler to the ground: its text
+    without a run, and the energy (J) at the angles of its cranks, of each assembly; nan where it is
+    not assembled."""
+
+    def spot(x: float, y: float, size: float = 0.7) -> Vector:
+        return np.array([round(x + rng.uniform(-size, size), 3), round(y + rng.uniform(0, 0.6), 3)])
+
+    a, e = np.zeros(2), np.array([round(rng.uniform(0.6, 1.4), 3), 0.0])
+    b, d, c = spot(0, 0.3), spot(float(e[0]), 0.3), spot(0.6, 1.1)
+    masses = [round(rng.uniform(0.2, 2), 3) for _ in range(4)]
+    centres = [spot(0, 0, 1.0) for _ in range(4)]
+    hook, post, stiff = spot(0, 0, 1.0), spot(0, 1.5, 1.0), round(rng.uniform(5, 40), 2)
+
+    def flat(v: Vector) -> str:
+        return f"[{float(v[0])!r}, {float(v[1])!r}]"
+
+    names = ["one", "two", "three", "four"]
+    links = "".join(
+        f"  {name}: {{mass: {mass}, center_of_mass: {flat(at)}}}\n"
+        for name, mass, at in zip(names, masses, centres, strict=True)
+    )
+    pins = zip(
+        "ABCDE", ["ground", *names[:3], "ground"], [*names, "four"], (a, b, c, d, e), strict=True
+    )
+    joints = "".join(
+        f"  {name}: {{type: R, links: [{one}, {other}], point: {flat(at)}}}\n"
+        for name, one, other, at in pins
+    )
+    written = f"""format: 1
+plane: xy
+units: {{angle: rad}}
+links:
+{links}joints:
+{joints}points:
+  hook: {{link: two, at: {flat(hook)}}}
+  post: {{link: ground, at: {flat(post)}}}
+loads:
+  - {{type: gravity, g: [0, -{G}]}}
+  - {{type: spring, between: [hook, post], stiffness: {stiff}, free: 0.3}}
+"""
+    bars = [math.hypot(*(c - b)), math.hypot(*(d - c))]
+
+    def spin(v: Vector, angle: float) -> Vector:
+        x, y = math.cos(angle), math.sin(angle)
+        return np.array([x * v[0] - y * v[1], y * v[0] + x * v[1]])
+
+    def heading(v: Vector) -> float:
+        return math.atan2(v[1], v[0])
+
+    def on(side: float) -> Callable[[NDArray[np.float64]], float]:
+        def energy(angles: NDArray[np.float64]) -> float:
+            b1, d1 = spin(b, angles[0]), e + spin(d - e, angles[1])
+            gap = d1 - b1
+            apart = math.hypot(*gap)
+            along = (apart**2 + bars[0] ** 2 - bars[1] ** 2) / (2 * apart)
+            if along**2 > bars[0] ** 2:
+                return math.nan
+            up = gap / apart
+            away = side * math.sqrt(bars[0] ** 2 - along**2)
+            c1 = b1 + along * up + away * np.array([-up[1], up[0]])
+            second = heading(c1 - b1) - heading(c - b)
+            third = heading(d1 - c1) - heading(d - c)
+            feet = [(a, a, angles[0]), (b, b1, second), (c, c1, third), (e, e, angles[1])]
+            moved = [
+                to + spin(at - foot, angle)
+                for at, (foot, to, angle) in zip(centres, feet, strict=True)
+            ]
+            stretch = math.hypot(*(b1 + spin(hook - b, second) - post)) - 0.3
+            return _weights(masses, moved, 1) + 0.5 * stiff * stretch**2
+
+        return energy
+
+    return written, [on(1.0), on(-1.0)]
+
+
+def stationary_of_five_bar(
+    energies: list[Callable[[NDArray[np.float64]], float]], starts: int = 8
+) -> list[tuple[NDArray[np.float64], float]]:
+    """Stationary places, with their energies, that scipy finds from a grid of starts; bettered with
+    shorter differences, since energies bend sharply beside dead centres."""
+    places: list[tuple[NDArray[np.float64], float]] = []
+    grid = np.linspace(-3, 3, starts)
+    for energy in energies:
+        for start in np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2):
+            if math.isnan(energy(start)):
+                continue
+            x = start
+            for step in (2e-4, 2e-5):
+                x = optimize.root(partial(_gradient, energy, step=step), x, tol=1e-12).x
+            # differences that reach over a dead centre say nothing
+            if any(np.abs(_gradient(energy, x, step)).max() > 1e-4 for step in (2e-5, 5e-6)):
+                continue
+            level = energy(x)
+            known = any(
+                np.abs(np.remainder(x - y + math.pi, TURN) - math.pi).max() < 1e-4
+                and abs(level - other) < 1e-6
+                for y, other in places
+            )
+            if not known:
+                places.append((x, level))
+    return places
+
+
+def _gradient(
+    energy: Callable[[NDArray[np.float64]], float], x: NDArray[np.float64], step: float
+) -> NDArray[np.float64]:
+    """By differences; large where there is none."""
+    found = []
+    for e in np.eye(2) * step:
+        far, near = energy(x + 2 * e) - energy(x - 2 * e), energy(x + e) - energy(x - e)
+        found.append((8 * near - far) / (12 * step))
+    return np.nan_to_num(np.array(found), nan=1e3)

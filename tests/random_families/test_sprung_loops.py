@@ -12,10 +12,12 @@ from random_families.four_bars import TURN, cases
 from random_families.sprung_loops import (
     SprungLoop,
     arm,
+    five_bar,
     plane_four_bar,
     rssr,
     stationary,
     stationary_of_arm,
+    stationary_of_five_bar,
 )
 
 import mechkin_cli as mk
@@ -83,3 +85,20 @@ def test_arms_of_two_freedoms(rng: random.Random) -> None:
         least = np.linalg.eigvalsh(hessian)[0]
         if abs(least) > 1e-3:
             assert event == ("stable" if least > 0 else "unstable")
+
+
+@pytest.mark.parametrize("rng", [*cases(804, 4)])
+def test_loops_of_two_freedoms(rng: random.Random) -> None:
+    written, energies = five_bar(rng)
+    window = dict.fromkeys(("A.theta", "E.theta"), (-math.pi, math.pi))
+    r = mk.loads(written).equilibrium(window=window)
+    found = np.stack([r["A.theta"], r["E.theta"]], axis=1)
+    levels = r["row.potential_energy"]
+    for x, level in stationary_of_five_bar(energies):
+        away = np.abs(np.remainder(found - x + math.pi, TURN) - math.pi).max(axis=1)
+        assert ((away < 1e-5) & (np.abs(levels - level) < 1e-5)).any()
+    for x, level in zip(found, levels, strict=True):
+        assert any(abs(energy(x) - level) < 1e-6 for energy in energies)
+    # the Euler characteristic of a closed surface is even
+    assert len(found) % 2 == 0
+    assert "window-missing" not in [note.code for note in r.diagnostics]
