@@ -162,6 +162,7 @@ def input_rounding(session: Session, values: Floats) -> Floats:
     values over the rows, since one near zero may be what two large ones leave."""
     largest = np.abs(session.inputs.values).max(axis=1, initial=0.0, keepdims=True)
     rounding = tolerances.INPUT_ROUNDING * np.maximum(largest, np.abs(values))
+    rounding = np.maximum(rounding, tolerances.LEAST_INPUT_ROUNDING)
     return np.asarray(np.maximum(rounding, _off_the_text(session)))
 
 

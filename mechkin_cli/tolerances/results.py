@@ -291,6 +291,10 @@ INPUT_ROUNDING: Final = 2.0**-50
 units: a multiple of a step, a unit and a whole number of turns taken off are less than eight
 roundings."""
 
+LEAST_INPUT_ROUNDING: Final = 2.0**-190
+"""The same of an input that is zero in all rows, rad or the kernel's length: enclosures of products
+hold 2^-200 for what underflows."""
+
 ENCLOSURE_ROUNDING: Final = 2.0**-50
 """Part of a quantity, its whole turns and its radius that is added to the radius, and of a
 coordinate that is added to its error bound: all are converted to the file's units, by six roundings

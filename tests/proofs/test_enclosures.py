@@ -3,6 +3,7 @@ mechanisms: tests/properties/test_enclosures.py."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -148,3 +149,16 @@ def test_forces_that_are_decided_in_doubles_are_refused_with_the_reason(
     with pytest.raises(mk.UsageError, match=why):
         proofs.enclosure("O2.force")
     assert np.isfinite(proofs.enclosure("O2.theta_dddot")[0]).all()
+
+
+def test_forces_are_enclosed_where_an_input_is_held_at_zero() -> None:
+    """Zero times a unit is enclosed with a radius, by which its box has to reach."""
+    m = mk.load(Path(__file__).parents[2] / "mechanisms" / "vibration" / "engine_mounts.yaml")
+    proofs = m.certify()
+    for name in ("pose.rx.effort", "front_left.force"):
+        low, high = proofs.enclosure(name)
+        values = np.asarray(m.analyze([name])[name])
+        off = DOUBLES * np.abs(values).max()
+        assert ((low - off < values) & (values < high + off)).all()
+        assert (high - low < 1e-9 * np.abs(values).max()).all()
+        assert not proofs.not_enclosed(name)
