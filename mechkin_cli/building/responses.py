@@ -371,11 +371,17 @@ class _ResponseBuilder:
         ) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
-        mechanism = without_friction(fields, mechanism, path)
+        start = build_start(fields, path, section, self.joints)
+        frictions = mechanism.frictions
+        if sum(one.value is not None for one in start) == 1:
+            # rows tell in which interval it holds
+            mechanism = replace(mechanism, frictions=())
+        else:
+            mechanism = without_friction(fields, mechanism, path)
         return ResponseProblem(
             name=name,
             place=fields.document.key_place(path),
-            start=build_start(fields, path, section, self.joints),
+            start=start,
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             driven=driven.inputs,
@@ -387,6 +393,7 @@ class _ResponseBuilder:
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
             search=EquilibriumSearch(self._windows(path, section), section.starts or 0),
+            frictions=frictions,
         )
 
     def _windows(self, path: Path, section: written.Equilibrium) -> tuple[Limit, ...]:

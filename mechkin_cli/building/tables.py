@@ -140,7 +140,9 @@ def _default(problem: Problem, run: str) -> TableLayout:
         response = problem.responses[run]
         efforts = [f"{joint}.{name}" for joint, name in response.efforts_of]
         if response.search is not None:
-            return resting_table(problem.mechanism.coordinates, efforts, run)
+            return resting_table(
+                problem.mechanism.coordinates, efforts, list(response.resting), run
+            )
         timed = True
     return default_table(problem.mechanism.coordinates, efforts, run=run, timed=timed)
 

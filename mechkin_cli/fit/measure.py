@@ -77,8 +77,8 @@ class FitModels:
         swept = [one for one in motion.inputs if np.ptp(one.written) > 0.0]
         if motion.time is not None or len(swept) != 1:
             raise UsageError(
-                "targets at inputs need a sweep in which one input moves by itself, without "
-                "motion: {time: ...}; write such a motion, or targets with least:"
+                "targets at inputs need a sweep in which one input moves by itself; write such a "
+                "motion, or time: in it, or targets with least:"
             )
         return swept[0]
 
@@ -125,7 +125,11 @@ class FitModels:
         data: dict[str, Any] = {k: v for k, v in document.data.items() if k not in LEFT_OUT}
         motion: dict[str, Any] = data["motion"]
         inputs = {}
-        for driven in self.model.problem.motion.inputs:
+        rest = self.model.problem.motion.rest
+        resting = () if rest is None else rest.inputs
+        for number, driven in enumerate(self.model.problem.motion.inputs):
+            if number in resting:
+                continue
             written = motion["inputs"][driven.name]
             if driven.name == self.moved.name:
                 orders = {"rate", "acceleration", "jerk"} & written.keys()
@@ -163,8 +167,10 @@ class FitValues:
         self.lower = np.array([one.lower for one in parameters])
         self.width = np.array([one.upper for one in parameters]) - self.lower
         self.names = [one.name for one in parameters]
-        self.at_inputs = [one for one in targets if one.at is not None and one.run == SWEEP]
-        self.at_moments = [one for one in targets if one.at is not None and one.run != SWEEP]
+        timed = models.model.problem.motion.time is not None
+        at = [one for one in targets if one.at is not None]
+        self.at_inputs = [one for one in at if one.run == SWEEP and not timed]
+        self.at_moments = [one for one in at if one.run != SWEEP or timed]
         self.anywhere = [one for one in targets if one.at is None and not one.least]
         self.least = [one for one in targets if one.least]
         swept = [SWEEP] if SWEEP in models.model.runs else []
@@ -189,12 +195,16 @@ class FitValues:
         return dict(zip(self.names, found, strict=True))
 
     def rows_of(self, target: Target) -> list[int]:
-        """The rows among the listed inputs, or of a response, at which a target stands."""
-        if target.run == SWEEP:
+        """The rows among the listed inputs, or at moments, at which a target stands."""
+        motion = self.models.model.problem.motion
+        if target.run != SWEEP:
+            moments = self.models.model.problem.responses[target.run].moments
+        elif motion.time is not None:
+            moments = motion.time
+        else:
             return [self._row[value] for value in target.at or ()]
-        response = self.models.model.problem.responses[target.run]
-        moments = response.moments.written.tolist()
-        return [moments.index(value) for value in target.at or ()]
+        written = moments.written.tolist()
+        return [written.index(value) for value in target.at or ()]
 
     def on_time(self, run: str, times: Floats) -> Bools:
         """Which rows of a response stand at their moments: that of a stop takes the place of the

@@ -35,11 +35,6 @@ def run_of(problem: Problem, place: str, given: Any) -> tuple[str, Problem]:
     except UsageError as error:
         raise UsageError(f"{place}: run: {error}") from None
     if run == SWEEP:
-        if problem.motion.rest is not None:
-            raise UsageError(
-                f"{place}: the sweep has coordinates at rest (motion: rest:), which a fit does not "
-                "find; write equilibria: with near:, and name that run"
-            )
         return run, problem
     response = problem.responses[run]
     if response.search is not None and response.search.window:
@@ -110,17 +105,19 @@ def input_of(problem: Problem, place: str, value: Any) -> float:
 
 
 def moment_of(problem: Problem, place: str, value: Any) -> float:
-    """A moment of a response's rows, in the file's units."""
-    response = problem.response
-    assert response is not None
+    """A moment of the rows of a response, or of a sweep in time, in the file's units."""
+    moments, name = problem.motion.time, SWEEP
+    if problem.response is not None:
+        moments, name = problem.response.moments, problem.response.name
+    assert moments is not None
     in_si = one_value(place, a_setting(place, value), TIME, problem.units)
-    written = response.moments.written
+    written = moments.written
     wanted = float(problem.units.from_si(in_si, TIME))
     near = float(written[np.abs(written - wanted).argmin()])
     if abs(near - wanted) > LAST_ROW * float(np.ptp(written)):
         unit = problem.units.label(TIME)
         raise UsageError(
-            f"{place}: no row of {response.name} stands at {wanted:.12g} {unit}, the nearest at "
+            f"{place}: no row of {name} stands at {wanted:.12g} {unit}, the nearest at "
             f"{near:.12g} {unit}; write that, or other moments into its time:"
         )
     return near
@@ -281,7 +278,7 @@ def _target(problem: Problem, place: str, given: Any) -> tuple[Target, bool]:
         if "at" in given:
             items = given["at"]
             items = items if isinstance(items, Iterable) and not isinstance(items, str) else [items]
-            read = input_of if run == SWEEP else moment_of
+            read = input_of if problem.motion.time is None else moment_of
             at = tuple(read(problem, f"{place}: at", item) for item in items)
             if len(at) != len(wanted):
                 raise UsageError(

@@ -272,8 +272,10 @@ class Fit(Listed):
         return np.asarray(reached & self._values.on_time(run, times))
 
     def _padded(self, run: str, text: str) -> Floats:
-        """A quantity at the moments of a response, nan behind its end."""
+        """A quantity at the moments of a run, nan behind the end of a response."""
         values = self._rows(run)[text]
+        if run == SWEEP:
+            return values
         count = self.model.design.response(run).rows
         padded = np.full((count, *values.shape[1:]), np.nan)
         padded[: len(values)] = values[:count]
@@ -287,7 +289,7 @@ class Fit(Listed):
         values = self._values
         lacks = [lack_of(self._rows(run), values.texts(run)) for run in values.runs]
         for met, target in zip(self.targets, values.targets, strict=True):
-            if target.at is not None and target.run == SWEEP:
+            if target in self._values.at_inputs:
                 along = values.models.moved.name, values.models.unit
                 lacks.append(lack_at(target.of, met.values, met.inputs, *along))
         return next((lack for lack in lacks if lack is not None), None)
@@ -315,7 +317,7 @@ class Fit(Listed):
                 parts = values.reshape(len(values), -1) * weights[: len(values), None]
                 size = np.array([[np.sqrt(np.nansum(np.square(parts)))]])
             return Met(target.label, target.unit, none, size, size)
-        if target.run != SWEEP:
+        if target in self._values.at_moments:
             rows = self._padded(target.run, target.of)[self._values.rows_of(target)]
             values = rows.reshape(-1, target.width)
             away = deviations(target, values[None])[0].reshape(values.shape) * target.within

@@ -67,8 +67,8 @@ __getattr__, __dir__ = lazy_names(
         "is_angle joint_type seat_letter",
         "problem": "Laws Problem differentiation law_value quantities_read read_by "
         "response_problem undefined_laws",
-        "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "
-        "bearing_load coordinate_quantities effort_quantity friction_states read_for "
+        "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL REST_SHARE SELF_LOCKING "
+        "TIME_OF_ROW bearing_load coordinate_quantities effort_quantity friction_states read_for "
         "response_quantities resting_quantities strands_of",
         "relation": "Arm Extent Fleet Follower Mesh Relation Swing Tension Term",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd EquilibriumSearch Flywheel "

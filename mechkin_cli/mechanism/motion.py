@@ -173,10 +173,12 @@ class Span(NamedTuple):
 
 class Rest(NamedTuple):
     """Which inputs of a sweep nothing drives, by number: in each row they are where the loads
-    balance. `solved`: the rows' values are those; then the rows from `first` to `last` have one,
-    and the `ends` say with which status and words the others have none."""
+    balance. `course`: that of the others, where they move by laws or follow others. `solved`: the
+    rows' values are those; then the rows from `first` to `last` have one, and the `ends` say with
+    which status and words the others have none."""
 
     inputs: tuple[int, ...]
+    course: Course | None = None
     solved: bool = False
     first: int = 0
     last: int = 0
@@ -187,7 +189,10 @@ class Rest(NamedTuple):
         """That of the rows from `first` to `last`, both included."""
         rows = last + 1 - first
         begin, end = self.first - first, self.last - first
-        return self._replace(first=min(max(begin, 0), rows), last=min(max(end, -1), rows - 1))
+        course = None if self.course is None else self.course.part(first, last)
+        return self._replace(
+            course=course, first=min(max(begin, 0), rows), last=min(max(end, -1), rows - 1)
+        )
 
 
 class MotionInputs(NamedTuple):

@@ -41,7 +41,6 @@ from mechkin_cli.mechanism.quantities import (
     bearing_catalogue,
     catalogue,
     response_quantities,
-    resting_quantities,
 )
 from mechkin_cli.mechanism.wanted import Wanted
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
@@ -262,7 +261,7 @@ class Problem:
                 found |= coefficient_catalogue(linear, moving, moving[0])
             own = response_quantities()
             if self.response.search is not None:
-                own = resting_quantities([name for _, name in self.response.independent])
+                own = self.response.resting
             found |= own | bearing_catalogue(elements, efforts)
             return found | {name: known for name, known in derived.items() if known.order < 3}
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)

@@ -22,7 +22,7 @@ from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
-from mechkin_cli.mechanism.pairs import is_angle
+from mechkin_cli.mechanism.pairs import dimension_of, is_angle
 from mechkin_cli.mechanism.relation import Relation
 from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.record import NamedTuple
@@ -54,6 +54,9 @@ TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
 
 SELF_LOCKING = Wanted("self locking", "self_locking", GROUND_NAME, DIMENSIONLESS, False)
 """1 where a drive that would brake without friction has to push."""
+
+REST_SHARE = Wanted("rest share", "rest_share", GROUND_NAME, DIMENSIONLESS, False)
+"""The part of their friction that joints at rest need so that nothing has to drive them."""
 
 REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, False)
 """The largest component of force, or moment in length units, of all joints."""
@@ -435,10 +438,11 @@ def response_quantities() -> dict[str, Wanted]:
     }
 
 
-def resting_quantities(coordinates: Sequence[str]) -> dict[str, Wanted]:
+def resting_quantities(coordinates: Sequence[str], *, rubs: bool = False) -> dict[str, Wanted]:
     """What rows of equilibria have, by name: the least stiffness against motions of some
     independent `coordinates`, the lowest natural frequency, and the largest force that does not
-    balance in parts of the largest of those that do."""
+    balance in parts of the largest of those that do; with friction, which `rubs`, between which
+    values of the coordinate it holds the mechanism."""
     slides = not any(map(is_angle, coordinates))
     stiffness = STIFFNESS if slides else TORSIONAL_STIFFNESS
     told: tuple[tuple[Kind, Dimension], ...] = (
@@ -446,6 +450,9 @@ def resting_quantities(coordinates: Sequence[str]) -> dict[str, Wanted]:
         ("frequency", DIMENSIONLESS / TIME),
         ("imbalance", DIMENSIONLESS),
     )
+    if rubs:
+        along = dimension_of(coordinates[0])
+        told += (("rest_from", along), ("rest_to", along))
     return {
         f"row.{kind}": Wanted(f"row.{kind}", kind, "row", dimension, False)
         for kind, dimension in told

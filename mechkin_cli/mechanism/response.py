@@ -18,6 +18,7 @@ from mechkin_cli.expressions import Expression, parse
 from mechkin_cli.mechanism.curve import LoadLaw
 from mechkin_cli.mechanism.motion import ORDERS, DrivenInput, Moments, MotionInputs
 from mechkin_cli.mechanism.pairs import dimension_of
+from mechkin_cli.mechanism.quantities import resting_quantities
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.units import TIME
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.held import LockedFreedom
     from mechkin_cli.mechanism.model import JointLoad, Mechanism
     from mechkin_cli.mechanism.motion import Assembly, Course, Limit
+    from mechkin_cli.mechanism.pair_type import Rubbing
+    from mechkin_cli.mechanism.wanted import Wanted
     from mechkin_cli.units import Dimension, UnitSystem
 
 
@@ -138,6 +141,8 @@ class ResponseProblem:
         load_laws: of the loads of this run.
         held: what holds its idle freedoms.
         search: of equilibria; None of a motion.
+        frictions: without which loads balance at equilibria, and which hold the mechanism in an
+            interval about each.
     """
 
     name: str
@@ -155,6 +160,7 @@ class ResponseProblem:
     load_laws: tuple[LoadLaw, ...]
     held: tuple[LockedFreedom, ...] = ()
     search: EquilibriumSearch | None = None
+    frictions: tuple[Rubbing, ...] = ()
 
     @property
     def section(self) -> str:
@@ -177,6 +183,17 @@ class ResponseProblem:
     def independent(self) -> list[tuple[str, str]]:
         """(joint, coordinate) of the start's values."""
         return [(one.joint, one.coordinate) for one in self.start if one.value is not None]
+
+    @property
+    def rubs_at_rest(self) -> bool:
+        """Whether friction holds the mechanism in an interval of its one coordinate."""
+        return bool(self.frictions) and len(self.independent) == 1
+
+    @property
+    def resting(self) -> dict[str, Wanted]:
+        """What rows of equilibria have beside others, by name."""
+        coordinates = [name for _, name in self.independent]
+        return resting_quantities(coordinates, rubs=self.rubs_at_rest)
 
     @property
     def driven_at(self) -> list[tuple[str, str]]:

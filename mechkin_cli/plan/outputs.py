@@ -44,7 +44,7 @@ COUPLING_KINDS = {"coupling_force", "coupling_torque", "tooth_force", "tension"}
 BUSHING_KINDS = {"bushing_force", "bushing_moment", "bushing_shift", "bushing_turn"}
 REACTION_KINDS = WRENCH_KINDS | COUPLING_KINDS
 """What redundant constraints may leave open."""
-_VERDICT_KINDS = {"friction_state", "self_locking", "reaction_level"}
+_VERDICT_KINDS = {"friction_state", "self_locking", "rest_share", "reaction_level"}
 FORCE_KINDS = (
     REACTION_KINDS
     | _SHAKING_KINDS
@@ -224,8 +224,8 @@ class OutputPlan:
             return self._coupling(wanted)
         if kind in BUSHING_KINDS:
             return self._bushing(wanted)
-        if kind == "self_locking":
-            return self._output(OutputCode.SELF_LOCKING, 0, 1.0)
+        if kind in ("self_locking", "rest_share"):
+            return self._output(OutputCode[kind.upper()], 0, 1.0)
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
 

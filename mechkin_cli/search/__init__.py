@@ -18,6 +18,6 @@ __getattr__, __dir__ = lazy_names(
     {
         "chain": "has_one_assembly",
         "clusters": "Within is_in_reach pose_keys pose_number same_poses",
-        "search": "Assemblies all_assemblies single_assembly with_assemblies",
+        "search": "Assemblies all_assemblies free_places single_assembly with_assemblies",
     },
 )

@@ -457,6 +457,30 @@ def _continued(
     return states
 
 
+def free_places(session: Session, within: Within, generator: RandomStarts, count: int) -> Floats:
+    """Places (states, places) of a free motion, closed to what the search leaves, at which some of
+    `count` random starts end: the steps are short where the loops leave a motion, so that each ends
+    near where it starts; short circuits have their share of them.
+
+    Args:
+        session: of the free motion, whose loops are one block.
+        within: where starts are taken.
+        generator: of the starts.
+        count: of them.
+    """
+    layout, inputs = session.layout, session.inputs.reduced[:, 0]
+    turns, middle = session.problem.assembly.turns, _named_turns(session)
+    states = np.repeat(_first_place(layout, inputs), count, axis=1)
+    randomise(layout, 0, states, generator, turns, middle, within)
+    _, closed = ends(session.plan, 0, np.repeat(inputs[:, None], count, axis=1), states)
+    threads = thread_states(layout, 0)
+    turned = np.abs(states[threads] - middle[threads, None]) <= most_turn(turns)
+    good = closed & turned.all(axis=0) & on_tracks(layout, 0, states)
+    states = np.ascontiguousarray(states[:, good])
+    _wrap_angles(layout, states)
+    return states[:, _are_stretched(layout, states)]
+
+
 def single_assembly(layout: Layout, plan: Plan, inputs: Floats, state: Floats) -> Floats:
     """Where one start (states,) ends, block by block; closed or not."""
     values, states = np.ascontiguousarray(inputs[:, None]), state[:, None].copy()

@@ -34,7 +34,7 @@ __getattr__, __dir__ = lazy_names(
         "quaternion_product reduce_angle round_of turn_of turned_quaternion",
         "kernel_run": "Ask Batch Chart POSITIONS PreciseConstants RESIDUAL_TESTS RowInputs "
         "assembly_size run turn_count",
-        "path": "places_at places_of",
+        "path": "Route places_at places_of",
         "redundancy": "equations_that_follow",
         "session": "Between Continued Exchanged Packing Session exchange find_limit lies_in_family "
         "moves_freely",

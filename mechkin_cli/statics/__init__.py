@@ -11,6 +11,7 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.statics.forces import *
+    from mechkin_cli.statics.places import *
     from mechkin_cli.statics.rest import *
     from mechkin_cli.statics.result import *
     from mechkin_cli.statics.runs import *
@@ -19,6 +20,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "forces": "Derivative DrivenAt Forces ForcesAt FreePlace combined differentiated summed",
+        "places": "Statics",
         "rest": "rested",
         "result": "EquilibriumResult",
         "runs": "balance balanced",

@@ -10,17 +10,18 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import eliminated
+from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.session import input_number, input_text
-from mechkin_cli.statics.forces import summed
-from mechkin_cli.statics.newton import determinant
+from mechkin_cli.session import input_number, input_text, input_unit
+from mechkin_cli.statics.forces import determinant, summed
 from mechkin_cli.statics.places import Place, Statics
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.session import Session
+    from mechkin_cli.session import Route, Session
     from mechkin_cli.show import Floats
 
 End = tuple[Status, Diagnostic] | None
@@ -45,8 +46,9 @@ class Followed(Protocol):
     times: Floats
     crossings: list[str]
 
-    def lost(self, row: int, at: str | None = None) -> End:
-        """That the branch could not be followed beyond a row, to which place at most."""
+    def lost(self, row: int, at: str | None = None, hint: str | None = None) -> End:
+        """That the branch could not be followed beyond a row, to which place at most, and what may
+        be done."""
         ...
 
 
@@ -67,6 +69,11 @@ class _Onward(NamedTuple):
     going: _Going
     ends: bool
 
+    @property
+    def turns_back(self) -> bool:
+        """Whether the inputs go back there."""
+        return bool(self.going.tangent[-1] <= 0.0)
+
 
 class Arc:
     """The way from an equilibrium at a row towards the next row by the arclength of the branch, in
@@ -79,8 +86,13 @@ class Arc:
         way = branch.values[:, to] - place.inputs
         way[self.free] = 0.0
         self.scale = max(sqrt(float(summed(way * way))), tolerances.LEAST_REST_WAY)
-        self.direction = way / self.scale
-        self.pace = float(branch.times[to] - branch.times[row]) / self.scale
+        self.way = way
+        self.times = float(branch.times[row]), float(branch.times[to])
+        self.route = _route(branch.session)
+        if self.route is not None:
+            course = self.route.course
+            ends = [course.at[course.rows == number] for number in (row, to)]
+            self.ends = float(ends[0][0]), float(ends[1][0])
 
     def follow(self) -> tuple[Place | None, End]:
         """The place at the next row; or None and why the branch does not come there."""
@@ -89,48 +101,76 @@ class Arc:
         step, over = min(self.scale, tolerances.EQUILIBRIUM_REACH) / 4.0, False
         for _ in range(tolerances.MOST_ARCS):
             if going is None:
-                return None, self.branch.lost(self.row, self._words(place, gone))
+                break
             if going.tangent[-1] <= 0.0:  # of the very first place
                 return None, self._fold(place, gone)
             found = self._step(place, gone, going, step)
-            if found is not None and not self._is_one(place, gone, going, found):
+            if found is not None and (
+                found.turns_back or not self._is_one(place, gone, going, found)
+            ):
                 found = None
+            if found is None and step <= tolerances.FOLD_STEP:
+                # slopes change much beside a fold, however short steps are
+                end = self._folded(place, gone, going)
+                if end is not None:
+                    return None, end
             if found is None and step <= tolerances.CROSSING_STEP and not over:
                 # another branch may cross: then no step that comes near to it is seen to be right
                 over = True
                 found = self._step(place, gone, going, tolerances.CROSSING_STEP)
-                if found is not None and not self._crosses(place, gone, going, found):
+                crossing = None if found is None else self._crossing(place, gone, going, found)
+                if found is not None and crossing is not None:
+                    if found.turns_back:
+                        return None, self._turned(crossing)
+                    self.branch.crossings.append(crossing)
+                else:
                     found = None
             if found is not None:
-                place, gone, going, ends = found
-                if ends:
+                place, gone, going = found.place, found.gone, found.going
+                if found.ends:
                     return place, None
                 step, over = min(2.0 * step, tolerances.EQUILIBRIUM_REACH), False
                 continue
             step *= 0.5
             if step < tolerances.LEAST_ARC:
-                if going.tangent[-1] < tolerances.NEAR_FOLD:
-                    return None, self._fold(place, gone)
-                return None, self.branch.lost(self.row, self._words(place, gone))
-        return None, self.branch.lost(self.row, self._words(place, gone))
+                break
+        return None, self._lost(place, gone)
+
+    def _folded(self, place: Place, gone: float, going: _Going) -> End:
+        """Where the branch turns back within a short step, and that it does; None where it does
+        not. The rate of the inputs goes through zero evenly there."""
+        found = self._step(place, gone, going, tolerances.FOLD_STEP)
+        if found is None or not found.turns_back or not self._is_one(place, gone, going, found):
+            return None
+        # beside a dead centre of these coordinates slopes are differences over its other side
+        if self.statics.beside_dead_centre(place, self.start):
+            return None
+        begin, end = float(going.tangent[-1]), float(found.going.tangent[-1])
+        part = begin / (begin - end)
+        here = self._y(place, gone)
+        way = self._y(found.place, found.gone) - here
+        inputs, _ = self._at(here + part * way)
+        gone += 0.5 * part * begin * sqrt(float(summed(way * way)))
+        return self._fold(place._replace(inputs=inputs), gone)
 
     def _step(self, place: Place, gone: float, going: _Going, step: float) -> _Onward | None:
         """The place a step onward, or that at the next row where this comes first, which is not
-        judged yet; None where there is none, or where it turns back."""
+        judged yet; None where there is none."""
         ends = gone + step * going.tangent[-1] >= self.scale
         found = self._corrected(place, gone, going.tangent, step, ends)
         onward = None if found is None else self._going(*found, going.tangent)
-        if found is None or onward is None or onward.tangent[-1] <= 0.0:
+        if found is None or onward is None:
             return None
         if float(summed(onward.tangent * going.tangent)) <= tolerances.ARC_COSINE:
             return None
         return _Onward(*found, onward, ends)
 
     def _is_one(self, place: Place, gone: float, going: _Going, found: _Onward) -> bool:
-        """Whether two places surely lie on one branch that does not turn back between them: slopes
-        of the forces change by less than half of what would make them singular from either end to
-        the other, and to the middle of the curve between them (as branches of positions are judged,
-        docs/numerics.md), alone and with the direction of the branch."""
+        """Whether two places surely lie on one branch, and the inputs go on between them unless
+        they go back at its end: slopes of the forces, with the direction of the branch and alone,
+        change by less than half of what would make them singular from either end to the other,
+        and to the middle of the curve between them (as branches of positions are judged,
+        docs/numerics.md)."""
         first, last = self._y(place, gone), self._y(found.place, found.gone)
         size = sqrt(float(summed((last - first) * (last - first))))
         middle = 0.5 * (first + last) + (size / 8.0) * (going.tangent - found.going.tangent)
@@ -143,18 +183,18 @@ class Arc:
             return False
         border = _between(going, found.going)
         slopes = (going.slopes, between[1], found.going.slopes)
-        for begin, half, end in (
-            [each[:, :-1] for each in slopes],
-            [np.concatenate([each, border]) for each in slopes],
-        ):
+        judged = [[np.concatenate([each, border]) for each in slopes]]
+        if not found.turns_back:
+            judged.append([each[:, :-1] for each in slopes])
+        for begin, half, end in judged:
             pairs = ((begin, half), (begin, end), (end, half), (end, begin))
-            if any(_change(one, other) > tolerances.SPECTRAL_RADIUS for one, other in pairs):
+            if any(not _change(one, other) <= tolerances.SPECTRAL_RADIUS for one, other in pairs):
                 return False
         return True
 
-    def _crosses(self, place: Place, gone: float, going: _Going, found: _Onward) -> bool:
-        """Whether another branch of equilibria crosses between two places, where this one goes on
-        straight; then it is told where. There the slopes with the direction of the branch
+    def _crossing(self, place: Place, gone: float, going: _Going, found: _Onward) -> str | None:
+        """Where another branch of equilibria crosses between two places between which this one goes
+        straight, in words; None where none does. There the slopes with the direction of the branch
         are singular: their determinant changes its sign."""
         here, way = self._y(place, gone), self._y(found.place, found.gone)
         way = way - here
@@ -167,29 +207,53 @@ class Arc:
             determinant(np.concatenate([each.slopes, border])) for each in (going, found.going)
         )
         if straight > tolerances.CROSSING_BEND or first * last >= 0.0:
-            return False
+            return None
         at = here + (first / (first - last)) * way
         inputs, _ = self._at(at)
-        self.branch.crossings.append(self._words(place._replace(inputs=inputs), float(at[-1])))
-        return True
+        return self._words(place._replace(inputs=inputs), float(at[-1]))
 
     def _words(self, place: Place, gone: float) -> str:
         """Where a place is, as messages tell it."""
         session, motion = self.branch.session, self.branch.session.problem.motion
         problem = session.problem
-        inputs = self.start.inputs + self.direction * gone
+        inputs = self._inputs(gone)
         inputs[self.free] = place.inputs[self.free]
         at = [
             input_text(input_number(problem, session.layout, number, float(inputs[number])))
             for number in (motion.leading_number, *self.free)
         ]
-        if motion.leading_number in self.free or not self.direction.any():
+        leader = self.branch.values[motion.leading_number]
+        if motion.leading_number in self.free or leader.min() == leader.max():
             at = at[1:]
-            if motion.time is not None:
-                time = float(self.branch.times[self.row]) + self.pace * gone
-                shown = float(problem.units.from_si(time, TIME))
-                at.insert(0, f"time = {shown:.12g} {problem.units.label(TIME)}")
+        if motion.time is not None:
+            shown = float(problem.units.from_si(self._time(gone), TIME))
+            at.insert(0, f"time = {shown:.12g} {problem.units.label(TIME)}")
         return ", ".join(at)
+
+    def _lost(self, place: Place, gone: float) -> End:
+        """That the branch could not be followed beyond a place, and what may be done."""
+        others = self.statics.beside_dead_centre(place, self.start)
+        hint = None
+        if others:
+            hint = (
+                "the coordinates at rest come near a dead centre there; name others: rest: "
+                f"[{', '.join(others)}]"
+            )
+        return self.branch.lost(self.row, self._words(place, gone), hint)
+
+    def _turned(self, at: str) -> End:
+        """That the branch turns back where another one crosses."""
+        text = (
+            f"the branch of equilibria turns back between rows {self.row + 1} and {self.to + 1}, "
+            "where another one crosses"
+        )
+        hint = (
+            "the mechanism may go on along that one: start there with assembly: {near: ...}, or "
+            "end the sweep before it"
+        )
+        return Status.branch_lost, Diagnostic(
+            "rest-lost", "error", text, None, f"at {at}", hint=hint
+        )
 
     def _fold(self, place: Place, gone: float) -> End:
         """That the branch turns back at a place, and where."""
@@ -204,9 +268,28 @@ class Arc:
         return Status.snapped_through, found
 
     def _at(self, y: Floats) -> tuple[Floats, float]:
-        inputs = self.start.inputs + self.direction * y[-1]
+        inputs = self._inputs(float(y[-1]))
         inputs[self.free] = y[:-1]
-        return inputs, float(self.branch.times[self.row]) + self.pace * float(y[-1])
+        return inputs, self._time(float(y[-1]))
+
+    def _time(self, gone: float) -> float:
+        part = gone / self.scale
+        return (1.0 - part) * self.times[0] + part * self.times[1]
+
+    def _inputs(self, gone: float) -> Floats:
+        """The inputs (inputs,) where they have gone a part of their way, as their laws say."""
+        part = gone / self.scale
+        inputs = self.start.inputs + self.way * part
+        if self.route is None or part in (0.0, 1.0):
+            return inputs
+        at, edges = (1.0 - part) * self.ends[0] + part * self.ends[1], self.route.course.edges
+        # of two cells that meet at a row, the one on this side
+        low, high = sorted(self.ends)
+        inner = min(max(at, low), high) if 0.0 < part < 1.0 else 0.5 * (low + high)
+        cell = min(max(int(np.searchsorted(edges, inner)) - 1, 0), edges.size - 2)
+        values = self.route.jets(cell, np.array([at]))[0, :, 0]
+        inputs[: values.size] = values
+        return inputs
 
     def _y(self, place: Place, gone: float) -> Floats:
         return np.append(place.inputs[self.free], gone)
@@ -215,16 +298,19 @@ class Arc:
         """Forces (free,) and their slopes (free, free + 1) at a place."""
         count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
         steps = np.zeros((place.inputs.size, 2 * count + 3))
-        times = np.full(2 * count + 3, self._at(self._y(place, gone))[1])
+        times = np.full(2 * count + 3, self._time(gone))
         for number, k in enumerate(self.free):
             steps[k, 2 * number], steps[k, 2 * number + 1] = h, -h
-        for sign, column in ((1.0, 2 * count), (-1.0, 2 * count + 1)):
-            steps[:, column] = sign * h * self.direction
-            times[column] += sign * h * self.pace
+        here, onward = self._inputs(gone), h * self.scale
+        for by, column in ((onward, 2 * count), (-onward, 2 * count + 1)):
+            steps[:, column] = self._inputs(gone + by) - here
+            times[column] = self._time(gone + by)
         found = self.statics.beside(place, steps, times)
         if not found.good.all():
             return None
-        return found.forces[:, -1], (found.forces[:, :-1:2] - found.forces[:, 1:-1:2]) / (2.0 * h)
+        changes = (found.forces[:, :-1:2] - found.forces[:, 1:-1:2]) / (2.0 * h)
+        changes[:, -1] /= self.scale
+        return found.forces[:, -1], changes
 
     def _going(self, place: Place, gone: float, before: Floats | None) -> _Going | None:
         """How the branch goes on at a place, onward from the direction before."""
@@ -281,6 +367,20 @@ class Arc:
         return None
 
 
+@remembered
+def _route(session: Session) -> Route | None:
+    """The way of the driven inputs along the rows; None where it goes straight from each to the
+    next."""
+    motion = session.problem.motion
+    if motion.rest is None or motion.rest.course is None:
+        return None
+    from mechkin_cli.session import Route
+
+    count = len(motion.rest.course.values)
+    units = [input_unit(session.layout, item) for item in motion.inputs[:count]]
+    return Route(motion.rest.course, session.inputs.values[:count], np.array(units))
+
+
 def _between(one: _Going, other: _Going) -> Floats:
     """The direction between those of a branch at two places, (1, free + 1)."""
     border = one.tangent + other.tangent
@@ -289,12 +389,17 @@ def _between(one: _Going, other: _Going) -> Floats:
 
 
 def _change(one: Floats, other: Floats) -> float:
-    """The largest sum of a row of one^-1 (other - one), which bounds its spectral radius; infinite
+    """The spectral radius of one^-1 (other - one), whatever the units of its columns; infinite
     where `one` is singular."""
     columns = []
     for k in range(len(one)):
         solved = eliminated(one.tolist(), (other[:, k] - one[:, k]).tolist(), 0.0)
         if solved is None:
             return np.inf
-        columns.append(np.abs(solved))
-    return float(np.max(summed(np.array(columns))))
+        columns.append(solved)
+    change = np.array(columns).T
+    found = _kernel.eigen(np.ascontiguousarray(change)) if np.isfinite(change).all() else None
+    if found is None:
+        return np.inf
+    real, imaginary = found[:2]
+    return float(np.sqrt(np.max(real * real + imaginary * imaginary)))

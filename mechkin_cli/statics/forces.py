@@ -230,7 +230,7 @@ class Forces:
 
         def of_rows(array: Floats) -> Floats:
             column = array[:, None] if array.ndim == 1 else array
-            return np.array(np.broadcast_to(column, (len(array), count)))
+            return np.repeat(column, count, axis=1) if column.shape[1] == 1 else column
 
         state = of_rows(place.state)
         guess = session.moved_along(state, combined(place.tangents, u)) if u.any() else state
@@ -341,6 +341,22 @@ def orthonormal(rows: Floats) -> Floats:
             raise ValueError("the directions are not independent")
         basis[k] = basis[k] / left
     return basis
+
+
+def determinant(matrix: Floats) -> float:
+    """The determinant of a small matrix, by elimination."""
+    rows, found = [row[:] for row in matrix.tolist()], 1.0
+    for k in range(len(rows)):
+        pivot = max(range(k, len(rows)), key=lambda i: abs(rows[i][k]))
+        if pivot != k:
+            rows[k], rows[pivot], found = rows[pivot], rows[k], -found
+        if rows[k][k] == 0.0:
+            return 0.0
+        found *= rows[k][k]
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    return found
 
 
 def _length(row: Floats) -> Floats:

@@ -252,22 +252,6 @@ def slopes(forces: Forces, place: FreePlace) -> tuple[Floats, Floats] | None:
     return found.forces[:, 0], (found.forces[:, 1::2] - found.forces[:, 2::2]) / (2.0 * step)
 
 
-def determinant(matrix: Floats) -> float:
-    """The determinant of a small matrix, by elimination."""
-    rows, found = [row[:] for row in matrix.tolist()], 1.0
-    for k in range(len(rows)):
-        pivot = max(range(k, len(rows)), key=lambda i: abs(rows[i][k]))
-        if pivot != k:
-            rows[k], rows[pivot], found = rows[pivot], rows[k], -found
-        if rows[k][k] == 0.0:
-            return 0.0
-        found *= rows[k][k]
-        for i in range(k + 1, len(rows)):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
-    return found
-
-
 def newton_step(matrix: Floats, forces: Floats) -> Floats:
     """The step (freedoms,) at whose end forces would vanish if they were linear; of singular slopes
     a damped one."""

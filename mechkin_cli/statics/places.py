@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import ZERO, effort_quantity
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Ask, RowInputs, turn_of
-from mechkin_cli.statics.forces import combined
+from mechkin_cli.statics.forces import combined, summed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
     from mechkin_cli.plan import Readout
     from mechkin_cli.session import Ending, Session
     from mechkin_cli.show import Bools, Floats
+
+
+_FORCES = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
 
 
 class Place(NamedTuple):
@@ -85,6 +89,7 @@ class Statics:
             [turn_of(problem, item) is not None for item in inputs]
             + [False] * (len(session.driven) - len(inputs))
         )
+        self._turns = np.where(self.cyclic, 2.0 * pi, np.inf)[:, None]
 
     @property
     def count(self) -> int:
@@ -98,7 +103,7 @@ class Statics:
 
     def reduced(self, inputs: Floats) -> tuple[Floats, Floats]:
         """Inputs (inputs, places) without whole turns, and these."""
-        whole = np.where(self.cyclic[:, None], np.rint(inputs / (2.0 * pi)), 0.0)
+        whole = np.rint(inputs / self._turns)
         return inputs - whole * (2.0 * pi), whole
 
     def rows(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> RowInputs:
@@ -115,11 +120,10 @@ class Statics:
     def forces(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Forced:
         """Forces at places (inputs, places) closed from guesses (states, places)."""
         readout = self.readout
-        demand = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
-        batch = self.session.run(self.rows(inputs, states, turns, time), Ask(demand, readout))
+        batch = self.session.run(self.rows(inputs, states, turns, time), Ask(_FORCES, readout))
         assert batch.outputs is not None
-        forces = np.stack([batch.outputs[readout.slots[q.name].start] for q in readout.wanted])
-        forces = forces * self.units[:, None]
+        slots = [readout.slots[wanted.name].start for wanted in readout.wanted]
+        forces = batch.outputs[slots] * self.units[:, None]
         good = batch.good & np.isfinite(forces).all(axis=0)
         if batch.undefined is not None:
             good &= ~batch.undefined.astype(bool)
@@ -162,6 +166,35 @@ class Statics:
             states = self.session.moved_along(states, combined(tangents, steps[moved]))
         turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
         return self.forces(inputs, states, turns, time)
+
+    def beside_dead_centre(self, place: Place, known: Place) -> list[str]:
+        """Names of coordinates that tell places apart about `place`, where the free ones stand near
+        a dead centre there, though not at a `known` place; none where they do not."""
+        session, layout = self.session, self.session.layout
+        tangents = self.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
+        sizes = np.sqrt(summed((tangents * tangents).T))
+        far = ~(sizes <= 1.0 / tolerances.NEAR_DEAD_CENTRE)
+        if not far.any():
+            return []
+        # what moves most there, in place of one of the free coordinates
+        way = tangents[int(np.argmax(np.where(np.isfinite(sizes), sizes, -1.0)))]
+        scalars = [
+            (layout.column(number, freedom), f"{edge.joint.name}.{name}")
+            for number, edge in enumerate(session.graph.edges)
+            if not edge.hung
+            for name, freedom in edge.joint.type.scalars.items()
+        ]
+        moved, name = max(scalars, key=lambda scalar: abs(float(way[scalar[0]])))
+        columns = [layout.column(*session.graph.inputs[k]) for k in self.free]
+        if moved in columns:
+            return []
+        before = self.tangents(known.inputs[:, None], known.state[:, None])[:, :, 0]
+        # which of them: that which leaves the others most independent
+        replaced = int(np.argmax(np.abs(before[:, moved])))
+        named = [session.problem.motion.inputs[k] for k in self.free]
+        names = [f"{each.joint}.{each.coordinate}" for each in named]
+        names[replaced] = name
+        return names
 
     def place(self, inputs: Floats, state: Floats) -> Place:
         """A closed place at some inputs, to which nothing was followed."""

@@ -15,11 +15,10 @@ from mechkin_cli.mechanism import (
     MotionInputs,
     ResponseProblem,
     is_angle,
-    resting_quantities,
 )
-from mechkin_cli.plan import Demand
+from mechkin_cli.plan import FORCE_KINDS, Demand
 from mechkin_cli.response import FreeResult
-from mechkin_cli.session import Chart, turn_count
+from mechkin_cli.session import Chart, input_unit, turn_count
 from mechkin_cli.statics.newton import Balancing, Search
 from mechkin_cli.statics.stability import Stability, Verdict
 from mechkin_cli.sweep import SweepRows
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.session import Ask, Batch, KernelInputs, Session
     from mechkin_cli.show import Floats
+    from mechkin_cli.statics.friction import RestInterval
 
 
 class EquilibriumResult(FreeResult):
@@ -42,6 +42,8 @@ class EquilibriumResult(FreeResult):
         start: the first assembly.
         found: the equilibria with their verdicts; without any there is one row without a place.
         notes: of the search.
+        rests: the intervals in which friction holds the mechanism, one for each that was found;
+            () without friction.
     """
 
     def __init__(
@@ -51,6 +53,7 @@ class EquilibriumResult(FreeResult):
         start: AssemblyStart,
         found: Sequence[tuple[Search, Verdict]],
         notes: Sequence[Diagnostic],
+        rests: Sequence[RestInterval | None] = (),
     ) -> None:
         free = balancing.forces.session
         count = max(len(found), 1)
@@ -78,7 +81,12 @@ class EquilibriumResult(FreeResult):
             chart=Chart(directions, still, still, np.zeros((0, count))),
             response=response,
         )
-        self.found = tuple(found)
+        self.found, self.rests = tuple(found), tuple(rests)
+        self.held = np.zeros(count, dtype=bool)
+        for number, (_, verdict) in enumerate(found):
+            self.held[number] = verdict.stability is Stability.HELD
+        # what friction of several joints takes there is not one value alone
+        rows.status[self.held] = Status.friction_undecided
         self.events = tuple(_words(response, verdict) for _, verdict in found) or ("",)
 
     @property
@@ -120,7 +128,7 @@ class EquilibriumResult(FreeResult):
 
     @property
     def _own(self) -> dict[str, Wanted]:
-        return resting_quantities([name for _, name in self.response.independent])
+        return self.response.resting
 
     def _told(self, values: Sequence[float]) -> Floats:
         return np.array(values) if values else np.full(1, np.nan)
@@ -137,6 +145,31 @@ class EquilibriumResult(FreeResult):
     def frequency(self) -> Floats:
         """The lowest natural one (rows,), 1/s; nan where there is none."""
         return self._told([verdict.frequency for _, verdict in self.found])
+
+    @property
+    def rest_from(self) -> Floats:
+        """The least value of the coordinate in the interval in which friction holds the mechanism
+        (rows,); nan where that is not known."""
+        return self._rest(0)
+
+    @property
+    def rest_to(self) -> Floats:
+        """As `rest_from`, the largest value."""
+        return self._rest(1)
+
+    def _rest(self, side: int) -> Floats:
+        unit = input_unit(self.session.layout, self.chosen.problem.motion.inputs[0])
+        return self._told(
+            [np.nan if one is None else unit * (one.low, one.high)[side] for one in self.rests]
+        )
+
+    def _keep_read(self, batch: Batch, ask: Ask) -> None:
+        super()._keep_read(batch, ask)
+        if not self.held.any() or ask.readout is None:
+            return
+        for quantity in ask.readout.wanted:
+            if quantity.kind in FORCE_KINDS and quantity.name in self.columns:
+                self.columns[quantity.name][:, self.held] = np.nan
 
     @property
     def imbalance(self) -> Floats:

@@ -11,10 +11,11 @@ import numpy as np
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.response import prepare, read
 from mechkin_cli.session import Packing, input_numbers, input_text
+from mechkin_cli.statics.friction import FrictionRest
 from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search
 from mechkin_cli.statics.places import Statics
 from mechkin_cli.statics.result import EquilibriumResult
-from mechkin_cli.statics.stability import judged
+from mechkin_cli.statics.stability import held, judged
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem, ResponseProblem
@@ -74,13 +75,19 @@ def _near(one: Prepared) -> EquilibriumResult:
     except ValueError:
         return EquilibriumResult(response, balancing, one.start, [], [_dead_start(response)])
     found = search(balancing, place)
-    if not found.found:
+    rest = FrictionRest(statics, response) if response.rubs_at_rest else None
+    if found.found:
+        row, at = (found, judged(balancing, found)), found.place
+    elif rest is not None and rest.unfounded is None and rest.holds(begin):
+        row, at = held(balancing, place), place
+    else:
         return EquilibriumResult(
             response, balancing, one.start, [], [not_found(response, balancing, found)]
         )
-    return EquilibriumResult(
-        response, balancing, one.start, [(found, judged(balancing, found))], []
-    )
+    if rest is None:
+        return EquilibriumResult(response, balancing, one.start, [row], [])
+    rests = rest.about([balancing.uncharted(statics, at)])
+    return EquilibriumResult(response, balancing, one.start, [row], rest.notes(rests), rests)
 
 
 def _dead_start(response: ResponseProblem) -> Diagnostic:

@@ -19,7 +19,7 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.statics.forces import Forces, FreePlace, summed
-from mechkin_cli.statics.newton import Balancing, Search, search
+from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search
 from mechkin_cli.statics.places import eigen
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ class Stability(Enum):
     UNSTABLE = "unstable"
     MARGINAL = "marginal"
     INDIFFERENT = "indifferent"
+    HELD = "held by friction"
     UNKNOWN = "not known"
 
 
@@ -89,6 +90,17 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
     length = forces.session.layout.length
     by_coordinates = nothing if named is None else length * length * float(eigen(named)[0][0])
     return Verdict(stability, coordinates, by_coordinates, along, frequency, size, unsymmetric)
+
+
+def held(balancing: Balancing, place: FreePlace) -> tuple[Search, Verdict]:
+    """A place at which the loads do not balance and friction holds the mechanism, and its
+    verdict: neither stiffness nor frequencies are told there."""
+    forces = balancing.forces.at(place, np.zeros((balancing.forces.freedoms, 1)))
+    largest = balancing.largest(place)
+    coordinates, _ = balancing.named(place)
+    found = Search(place, forces.forces[:, 0], largest, SearchEnd.FOUND, 0)
+    verdict = Verdict(Stability.HELD, coordinates, np.nan, 0, np.nan, largest)
+    return found, verdict
 
 
 def _fold_stiffness(forces: Forces, place: FreePlace, direction: Floats, size: float) -> float:

@@ -147,11 +147,12 @@ def default_table(
     return TableLayout(run, "Coordinates, rates and efforts", columns, run=run)
 
 
-def resting_table(coordinates: Sequence[str], efforts: Collection[str], run: str) -> TableLayout:
+def resting_table(
+    coordinates: Sequence[str], efforts: Collection[str], told: Sequence[str], run: str
+) -> TableLayout:
     """The table of equilibria that have none, called after their run: all coordinates, the efforts,
-    and what is told of each equilibrium."""
-    told = ("row.event", "row.least_stiffness", "row.frequency", "row.imbalance")
-    names = [*coordinates, *effort_names(efforts), *told]
+    and what is `told` of each equilibrium."""
+    names = [*coordinates, *effort_names(efforts), ROW_EVENT, *told]
     columns = tuple(ColumnLayout(name, expressions.parse(name)) for name in names)
     return TableLayout(run, "Coordinates, efforts and stability", columns, run=run)
 

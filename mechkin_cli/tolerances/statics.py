@@ -68,8 +68,14 @@ SAME_EQUILIBRIUM: Final = 1e-6
 found to the cube root of rounding, 1e-5 of their curvature's reach."""
 
 WINDOW_PLACES: Final = 48
-"""Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for: a
-circuit of the mechanism that lies within one of them is missed."""
+"""Parts of a window, or of each turn that it has, at whose ends all assemblies are looked for."""
+
+CIRCUIT_STARTS: Final = 128
+"""Random starts with the coordinate free, taken at once: 106 that end within the window at known
+circuits bring the chance of another down to `WINDOW_CHANCE`."""
+
+MOST_CIRCUIT_STARTS: Final = 2048
+"""Such starts at most, where few of them end within the window."""
 
 WINDOW_SHIFT: Final = 0.0431
 """By how much of such a part its ends stand off even values, and those of the window off its ends:
@@ -117,23 +123,31 @@ at a dead centre, and there is no stiffness by it."""
 
 # Sweeps at rest.
 
-MOST_REST_ROWS: Final = 256
+MOST_REST_ROWS: Final = 1024
 """Rows of a sweep at rest that are corrected at once."""
 
-REST_POINTS: Final = 3
-"""Known rows through which the next ones are extrapolated: with more, long stretches swing."""
+REST_POINTS: Final = 8
+"""Known rows through which the next ones are extrapolated, at most: of more, rounding is seen where
+the next rows go four times as far."""
+
+REST_GROWTH: Final = 8
+"""How many times as many rows as before are corrected next, at most, and what part of them where
+they were too many."""
+
+REST_TERM: Final = 0.1
+"""Rows are predicted as far as the last term of their polynomial is below this, rad or length
+units: Newton's method needs three steps then."""
+
+REST_REACH: Final = 0.2
+"""Rows are predicted by the rate of the branch alone up to this far from the first one, rad or
+length units."""
+
+REST_NODES: Final = 16
+"""Rows of a stretch that are corrected with a stiffness of their own, at most; those between follow
+by interpolation."""
 
 MOST_CHORDS: Final = 12
-"""Corrections of predicted equilibria with one stiffness: three or four are enough."""
-
-TELLING_STEP: Final = 1e-7
-"""Corrections beyond this, rad or length units, tell the slope of the forces to nine digits."""
-
-FEW_CHORDS: Final = 4
-"""So few corrections tell that the next stretch may be longer."""
-
-MANY_CHORDS: Final = 6
-"""More corrections tell that the next stretch should be shorter."""
+"""Corrections of predicted equilibria: three or four are enough."""
 
 CHORD_GAIN: Final = 0.5
 """Each correction has to be smaller than the one before by this, or it was predicted too far."""
@@ -181,8 +195,13 @@ is (2 e / step)^2, so that those nearer than 5e-6 count as crossing."""
 LEAST_ARC: Final = 1e-9
 """Shortest step by arclength: below, branches that meet are not told apart."""
 
-NEAR_FOLD: Final = 1e-3
-"""Where the inputs move by less than this part of the branch's length, it turns back there."""
+NEAR_DEAD_CENTRE: Final = 0.05
+"""Coordinates that tell places worse than others by this part stand near a dead centre: slopes by
+them are differences over `NEWTON_DIFFERENCE`, which have no values closer to one than that, where
+rates are its square root."""
+
+FOLD_STEP: Final = 1e-5
+"""Arclength within which a fold is located; its inputs are then right to the cube of that."""
 
 ARC_COSINE: Final = 0.9
 """Least cosine between the directions of a branch a step apart."""
@@ -190,3 +209,30 @@ ARC_COSINE: Final = 0.9
 TURNED_BALANCE: Final = 1e-9
 """Force left at an equilibrium whose angles were turned by whole turns, in parts of the largest of
 one load, up to which it is one still: turns add rounding alone, a spring that counts them 2 pi."""
+
+# Rest by friction.
+
+ABOUT_TO_MOVE: Final = 1e-30
+"""Acceleration that tells the way in which a mechanism at rest would begin to move: its square is
+still a number, and what it does to inertia is far below the rounding of loads."""
+
+REST_INTERVAL_STEP: Final = 2.0**-7
+"""Step, rad or length units, by which the places of an interval of rest are looked at: where the
+mechanism slips within less, and rests again, is missed."""
+
+REST_INTERVAL_PLACES: Final = 32
+"""Places that are looked at in one call."""
+
+REST_DEAD_CENTRE_PLACES: Final = 24
+"""Places towards a dead centre that ends an interval, each half as far from it as the last one."""
+
+REST_EDGE_PART: Final = 2.0**-10
+"""Parts of a bracket beside the root of a line through its ends at which it is cut: it is a
+thousand times shorter where the line is that good."""
+
+SAME_REST_SHARE: Final = 1e-6
+"""Shares of friction at one pose that differ by more are of other loads, as of springs that count
+turns."""
+
+MOST_REST_INTERVALS: Final = 4
+"""Intervals of rest whose ends are told one by one."""

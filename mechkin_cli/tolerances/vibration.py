@@ -23,3 +23,7 @@ differences of forces leave up to 1e-12 of the largest stiffness."""
 PARAMETER_STEP: Final = 1e-3
 """Step of a parameter, in parts of its value, by which frequencies are differentiated: the fourth
 order leaves 1e-12 of a smooth frequency, and rounding 1e-11."""
+
+WELL_TOLD: Final = 8.0
+"""Rates of joints, rad or length units for one of an input, up to which the inputs of a sweep tell
+its motion so well that steps along them do as well as such along the motion itself."""

@@ -148,7 +148,8 @@ class _SweepRun:
         problem = self.problem
         session = variation.base
         if (
-            any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
+            problem.motion.rest is not None  # where it rests is found row by row
+            or any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
             or (session.is_redundant and any(q.kind in REACTION_KINDS for q in self.wanted))
             or self._forces_are_judged(session)
             or self._led_by_rates()
@@ -412,8 +413,9 @@ CHUNK = 512
 
 
 class _ResponseRun:
-    """One call of `vary` for a response: arrays (variants, rows) or (variants, rows, 3) by the
-    texts asked for."""
+    """One call of `vary` for a response, or for equilibria: arrays (variants, rows) or (variants,
+    rows, 3) by the texts asked for. A window has as many rows as the most equilibria of a variant,
+    those without one nan."""
 
     def __init__(
         self, model: Solvable, names: tuple[str, ...], asked: list[str], run: str, packing: Packing
@@ -472,6 +474,8 @@ class _ResponseRun:
         parse = result.problem.definitions.parse
         read(result, read_by(map(parse, self.asked), known))
         analysis = Analysis(model, (), result, self.name)
+        if result.response.search is not None and result.rows > self.rows:
+            self._widen(result.rows, found)
         rows = min(result.rows, self.rows)
         self.codes[number] = int(Status.ok)
         self.codes[number, :rows] = result.status[:rows]
@@ -480,6 +484,18 @@ class _ResponseRun:
             if text not in found:
                 found[text] = np.full((count, self.rows, *array.shape[1:]), np.nan)
             found[text][number, :rows] = array
+
+    def _widen(self, rows: int, found: dict[str, Floats]) -> None:
+        """Makes room for more rows of each variant."""
+        more = rows - self.rows
+        for text, array in found.items():
+            none = np.full((len(array), more, *array.shape[2:]), np.nan)
+            found[text] = np.concatenate([array, none], axis=1)
+        # a variant without a place has no row; of others there are no more
+        last = np.where((self.codes == int(Status.not_assembled)).all(axis=1), self.codes[:, -1], 0)
+        behind = np.repeat(last[:, None], more, axis=1).astype(np.int8)
+        self.codes = np.concatenate([self.codes, behind], axis=1)
+        self.rows = rows
 
 
 def vary(
@@ -496,12 +512,6 @@ def vary(
     packing = a_packing(lanes, threads)
     if a_text("run", run, f'"{SWEEP}"') != SWEEP:
         name = run_name((SWEEP, *model.problem.responses), run)
-        search = model.problem.responses[name].search
-        if search is not None and search.window:
-            raise UsageError(
-                f"{name} finds any number of equilibria in a window; vary one: near: instead of "
-                f'window:, or one by one: with_parameters({{...}}).equilibrium("{name}")'
-            )
         return _vary_response(model, parameters, quantities, reduce, name, packing)
     if SWEEP not in model.runs:
         raise UsageError(
@@ -510,11 +520,6 @@ def vary(
         )
     base = base_of(model.design)
     problem = base.design.problem
-    if problem.motion.rest is not None:
-        raise UsageError(
-            f"the sweep of {model.name} has coordinates at rest (motion: rest:), which are found "
-            "row by row; vary it one by one: with_parameters({...}).analyze()"
-        )
     varied, names, values = varied_parameters(problem, parameters, model.design.values)
     asked = _expressions_once(base, quantities)
     call = _SweepRun(model, names, asked, reductions_of(asked, reduce), packing)

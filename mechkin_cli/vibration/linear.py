@@ -40,8 +40,9 @@ if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.plan import Readout
-    from mechkin_cli.session import Batch
+    from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.vibration.inputs import InputForces
 
 
 class Motions(NamedTuple):
@@ -63,42 +64,73 @@ class SmallMotions:
     """Small motions about a place.
 
     Args:
-        forces: of the free mechanism.
-        place: about which it moves.
+        session: of the free mechanism.
+        driven: its inputs.
+        place: gives the one about which it moves.
         coordinates: that are named, as many as there are freedoms.
-        known: quantities of the session's problem.
         held_by: coordinates whose constant efforts hold the place; None: the named ones.
+        inputs: what the drives of a sweep exert about the place, if the coordinates are its inputs:
+            that tells the matrices at less cost.
     """
 
     def __init__(
         self,
-        forces: Forces,
-        place: FreePlace,
+        session: Session,
+        driven: DrivenAt,
+        place: Callable[[Forces], FreePlace],
         coordinates: Sequence[str],
-        known: Mapping[str, Wanted],
-        held_by: Sequence[str] | None,
+        held_by: Sequence[str] | None = None,
+        inputs: InputForces | None = None,
     ) -> None:
-        self.forces, self.place, self.coordinates = forces, place, tuple(coordinates)
-        self.known = known
-        session = forces.session
+        self.session, self.driven, self._place = session, driven, place
+        self.coordinates = tuple(coordinates)
+        self.known: Mapping[str, Wanted] = session.problem.quantities()
         self.energy = session.layout.length**2
-        self._first, self._second = (self._readout(self.coordinates, k) for k in (1, 2))
-        driven = forces.driven
         self.moves = bool(driven.rates.any() or driven.accelerations.any())
-        here = np.zeros((forces.freedoms, 1))
-        self.rates = self._rates(here, driven)[0]
-        self.inverse = inverse(self.rates)[0]
-        self._held: tuple[tuple[str, ...], Floats] | None = None
-        # what the coordinates need to stay
-        left, _, back = self._left(self.still())
-        self.efforts = _by_places(turned(back), left)[:, 0]
-        self.pushed = float(np.abs(left).max(initial=0.0))
-        holding, efforts = self.coordinates, self.efforts
-        if held_by is not None and tuple(held_by) != holding:
-            holding = tuple(held_by)
-            rates = self._rates(here, driven, self._readout(holding, 1))[0]
-            efforts = solved(turned(rates)[0], left)[:, 0]
-        self._held = holding, efforts
+        self.held_by = self.coordinates if held_by is None else tuple(held_by)
+        self._inputs = inputs
+
+    @cached_property
+    def forces(self) -> Forces:
+        """Of the free mechanism."""
+        return Forces(self.session, self.driven)
+
+    @cached_property
+    def place(self) -> FreePlace:
+        """About which it moves."""
+        return self._place(self.forces)
+
+    @cached_property
+    def rates(self) -> Floats:
+        """N at the place (1, coordinates, freedoms)."""
+        return self._rates(np.zeros((self.forces.freedoms, 1)), self.driven)[0]
+
+    @cached_property
+    def inverse(self) -> Floats:
+        """N^-1 there; nan or infinite where the coordinates do not tell the motion."""
+        found: Floats = inverse(self.rates)[0]
+        return found
+
+    @cached_property
+    def _pushes(self) -> Floats:
+        """What has to act along the chart (freedoms, 1) to keep the place, J."""
+        return self._left(self.still(), held=False)[0]
+
+    @cached_property
+    def efforts(self) -> Floats:
+        """What the coordinates (freedoms,) need to stay."""
+        if self._inputs is not None:
+            return self._inputs.efforts
+        return times(turned(self.inverse), self._pushes)[:, 0]
+
+    @cached_property
+    def _holding(self) -> Floats:
+        """The efforts along the coordinates that hold the place."""
+        if self.held_by == self.coordinates:
+            return self.efforts
+        here = np.zeros((self.forces.freedoms, 1))
+        rates = self._rates(here, self.driven, self._readout(self.held_by, 1))[0]
+        return solved(turned(rates)[0], self._pushes)[:, 0]
 
     @property
     def is_balanced(self) -> bool:
@@ -108,19 +140,19 @@ class SmallMotions:
 
     def with_forces(self, forces: Forces) -> SmallMotions:
         """The same motions, read with other loads."""
-        other = copy(self)
-        other.forces = forces
+        place, other = self.place, copy(self)
+        other.forces, other.session, other.place = forces, forces.session, place
         return other
 
     def still(self, count: int = 1) -> Motions:
         """The place itself, at rest, so many times."""
         zeros = np.zeros((self.forces.freedoms, count))
-        return Motions(zeros, zeros, zeros, self.forces.driven)
+        return Motions(zeros, zeros, zeros, self.driven)
 
     def _readout(self, names: Sequence[str], order: int) -> Readout:
         """Rates (order 1) or accelerations (2) of coordinates."""
         suffix = "_dot" if order == 1 else "_ddot"
-        return self.forces.session.readout([self.known[name + suffix] for name in names])
+        return self.session.readout([self.known[name + suffix] for name in names])
 
     def _rates(
         self, u: Floats, driven: DrivenAt, readout: Readout | None = None
@@ -136,7 +168,7 @@ class SmallMotions:
         )
         rest = np.zeros_like(moving)
         many = DrivenAt(values, whole, full, moving * still, rest, driven.time)
-        readout = readout or self._first
+        readout = readout or self._readout(self.coordinates, 1)
         everywhere = np.tile(u, (1, n + 1))
         batch = self.forces.told(self.place, readout, everywhere, rates, np.zeros_like(rates), many)
         told = _outputs(batch, readout).reshape(-1, n + 1, places)
@@ -145,26 +177,26 @@ class SmallMotions:
     def _motion(self, at: Motions) -> tuple[Floats, Floats, Floats]:
         """Rates and accelerations of the chart (freedoms, places), and N^-1 (places, ...)."""
         u, first, second, driven = at
-        if not self.moves and driven is self.forces.driven:
+        if not self.moves and driven is self.driven:
             # to first order: what rates bend is even in them
             return times(self.inverse, first), times(self.inverse, second), self.inverse[None]
         rates, drift = self._rates(u, driven)
         back = inverse(rates)
         one = _by_places(back, first - drift)
-        batch = self.forces.told(self.place, self._second, u, one, np.zeros_like(one), driven)
-        bias = _outputs(batch, self._second)
+        readout = self._readout(self.coordinates, 2)
+        batch = self.forces.told(self.place, readout, u, one, np.zeros_like(one), driven)
+        bias = _outputs(batch, readout)
         return one, _by_places(back, second - bias), back
 
-    def _left(self, at: Motions) -> tuple[Floats, Bools, Floats]:
-        """What would have to act along the chart (freedoms, places), J, less what holds, where it
-        is known, and N^-1 (places, ...)."""
+    def _left(self, at: Motions, *, held: bool = True) -> tuple[Floats, Bools, Floats]:
+        """What would have to act along the chart (freedoms, places), J, less what holds where that
+        is `held`; where it is known, and N^-1 (places, ...)."""
         one, two, back = self._motion(at)
         found = self.forces.at(self.place, at.u, one, two, at.driven)
         left = self.energy * found.forces
-        if self._held is not None:
-            names, efforts = self._held
-            rates, _ = self._rates(at.u, at.driven, self._readout(names, 1))
-            left = left - times(turned(rates), efforts[:, None])[..., 0].T
+        if held:
+            rates, _ = self._rates(at.u, at.driven, self._readout(self.held_by, 1))
+            left = left - times(turned(rates), self._holding[:, None])[..., 0].T
         return left, found.good, back
 
     def _along(self, at: Motions) -> Values:
@@ -202,13 +234,15 @@ class SmallMotions:
     @cached_property
     def matrices(self) -> tuple[Floats, Floats, Floats]:
         """K, C, M (freedoms, freedoms)."""
+        if self._inputs is not None:
+            return self._inputs.matrices
         if self.moves:
             stiffness, damping, inertia = self.derivatives(self._along)
             return stiffness, damping, 0.5 * (inertia + inertia.T)
         forces, place = self.forces, self.place
         along = forces.stiffness(place).matrix
         stiffest = self.energy * float(np.abs(along).max(initial=0.0))
-        if self.pushed > tolerances.NO_BEND * stiffest:
+        if np.abs(self._pushes).max() > tolerances.NO_BEND * stiffest:
             along = along - self._bend() / self.energy
         loads = forces.session.problem.mechanism.loads
         damping = np.zeros_like(along)
@@ -225,14 +259,12 @@ class SmallMotions:
     def _bend(self) -> Floats:
         """The second derivatives (freedoms, freedoms) by the chart of the coordinates along which
         efforts hold the place, each times its effort, J."""
-        assert self._held is not None
-        names, efforts = self._held
-        n = self.forces.freedoms
+        efforts, n = self._holding, self.forces.freedoms
         pairs = [(i, k) for i in range(n) for k in range(i, n)]
         rates = np.zeros((n, len(pairs)))
         for number, (i, k) in enumerate(pairs):
             rates[i, number] = rates[k, number] = 1.0
-        none, readout = np.zeros_like(rates), self._readout(names, 2)
+        none, readout = np.zeros_like(rates), self._readout(self.held_by, 2)
         seconds = _outputs(self.forces.told(self.place, readout, none, rates, none), readout)
         # v.H v of single motions, and of two at once
         squares = summed(efforts[:, None] * seconds)
@@ -249,7 +281,7 @@ class SmallMotions:
         """Derivatives (numbers,) of what is read, or of what would have to act along the
         coordinates, by a driven input, its rate and its acceleration in kernel units, at q, q' and
         q'' as they are."""
-        driven, n = self.forces.driven, self.forces.freedoms
+        driven, n = self.driven, self.forces.freedoms
         unit = np.zeros(len(driven.values))
         unit[number] = 1.0
 
@@ -283,7 +315,7 @@ class SmallMotions:
             UsageError: a quantity that is not known beside a row.
             ExpressionError: an expression with no value.
         """
-        problem = self.forces.session.problem
+        problem = self.session.problem
         names = dict.fromkeys(name for one in expressions for name in sorted(one.names))
         wanted = [self.known[name] for name in names if name not in problem.parameters]
         for one in wanted:
@@ -291,7 +323,7 @@ class SmallMotions:
                 raise UsageError(
                     f"{one.name} is not known beside a row; ask for what it follows from"
                 )
-        readout = self.forces.session.readout(wanted)
+        readout = self.session.readout(wanted)
         before: dict[str, Floats] = {}
 
         def read(at: Motions) -> Values:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.plan import Demand
@@ -14,6 +15,7 @@ from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response import ResponseResult, free_session, with_loads
 from mechkin_cli.session import Ask, RowInputs, turn_count
 from mechkin_cli.statics import DrivenAt, Forces, FreePlace
+from mechkin_cli.vibration.inputs import InputForces
 from mechkin_cli.vibration.linear import SmallMotions
 
 if TYPE_CHECKING:
@@ -54,15 +56,19 @@ def freed(
     if isinstance(result, ResponseResult) or hasattr(result, "chart"):
         session, driven = _of_free(result, row, held)
         own = [f"{joint}.{name}" for joint, name in result.response.independent]  # type: ignore[attr-defined]
-        held_by = None
+        held_by: list[str] | None = None
     else:
         session, driven, own = _of_sweep(result, row, held)
         held_by = own
-    forces = Forces(session, driven)
-    place = _place(forces, result, row)
     names = own if coordinates is None else list(coordinates)
+    inputs = _by_inputs(result, row, session) if names == held_by else None
+    small = SmallMotions(
+        session, driven, lambda forces: _place(forces, result, row), names, held_by, inputs
+    )
+    if inputs is None:
+        _check(small, own)
     return Freed(
-        _small(forces, place, names, own, held_by),
+        small,
         session,
         tuple(f"{joint}.{name}" for joint, name in session.problem.motion.driven),
         bool(result.problem.mechanism.frictions),
@@ -177,29 +183,39 @@ def _directions(result: Result, row: int, free: Session) -> Floats:
     return np.ascontiguousarray(batch.first.T)
 
 
-def _small(
-    forces: Forces,
-    place: FreePlace,
-    names: Sequence[str],
-    own: Sequence[str],
-    held_by: Sequence[str] | None,
-) -> SmallMotions:
-    known = forces.session.problem.quantities()
+def _by_inputs(result: Result, row: int, free: Session) -> InputForces | None:
+    """What the drives of the free inputs exert about a row of a sweep, where these tell its motion
+    well and efforts act at them alone."""
+    problem = result.session.problem
+    drives = problem.mechanism.drives
+    if drives is not None and (drives.actuators or drives.constraints):
+        return None
+    if not np.abs(_directions(result, row, free)).max(initial=0.0) <= tolerances.WELL_TOLD:
+        return None
+    motion = problem.motion.driven
+    return InputForces(result, row, [k for k, at in enumerate(motion) if at not in free.driven])
+
+
+def _check(small: SmallMotions, own: Sequence[str]) -> None:
+    """That the named coordinates tell the motion; `own` are such as do elsewhere.
+
+    Raises:
+        UsageError: they are unknown, too few or too many, or do not.
+    """
+    names, known, freedoms = small.coordinates, small.known, small.forces.freedoms
     coordinates = [name for name, wanted in known.items() if wanted.kind == "coordinate"]
     for name in names:
         if name not in known or known[name].kind != "coordinate" or known[name].order:
             hint = nearest_hint(name, coordinates) or f"for example {', '.join(own)}"
             raise UsageError(f"{name[:LONGEST_NAME]} is no coordinate; {hint}")
-    if len(set(names)) != len(names) or len(names) != forces.freedoms:
-        freedoms = "1 freedom" if forces.freedoms == 1 else f"{forces.freedoms} freedoms"
+    if len(set(names)) != len(names) or len(names) != freedoms:
+        told = "1 freedom" if freedoms == 1 else f"{freedoms} freedoms"
         raise UsageError(
-            f"{freedoms} are told by as many coordinates, and {len(names)} are named; for example "
+            f"{told} are told by as many coordinates, and {len(names)} are named; for example "
             f"coordinates={list(own)}"
         )
-    small = SmallMotions(forces, place, names, known, held_by)
     if not np.isfinite(small.inverse).all():
         raise UsageError(
             f"{', '.join(names)} do not tell the motion in this row, as at a dead centre: name "
             "other coordinates"
         )
-    return small

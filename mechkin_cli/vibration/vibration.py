@@ -371,7 +371,7 @@ class Vibration(Listed):
         problem = self._freed.session.problem
         mechanism = problem.mechanism
         more = replace(problem, mechanism=replace(mechanism, loads=(*mechanism.loads, load)))
-        return Forces(with_loads(self._freed.session, more), self._small.forces.driven)
+        return Forces(with_loads(self._freed.session, more), self._small.driven)
 
     def _force(self, name: str) -> Floats:
         """What acts along the coordinates (coordinates,) by a unit force along a quantity, which

@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import math
 import random
+import re
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 from random_families.four_bars import TURN, cases
 from random_families.sprung_loops import SprungLoop, arm, plane_four_bar, rssr
+from scipy.optimize import brentq
 
 import mechkin_cli as mk
 from mechkin_cli.show import Floats
@@ -93,3 +95,67 @@ def test_rows_under_a_growing_load_do_not_depend_on_their_distance(rng: random.R
     np.testing.assert_allclose(few[same], many[same], atol=1e-8)
     if not (few_lost or many_lost):
         np.testing.assert_array_equal(np.isfinite(few), np.isfinite(many))
+
+
+def _angles(force: float, rows: int) -> tuple[Floats, Floats]:
+    """Two equal rods in a row, pulled sideways by a force that grows to `force`."""
+    text = f"""
+format: 1
+plane: xy
+units: {{length: m, angle: rad, force: N}}
+links: {{a: {{mass: 1, center_of_mass: [0, -0.5]}}, b: {{mass: 1, center_of_mass: [0, -1.5]}}}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0]}}
+  B: {{type: R, links: [a, b], point: [0, -1]}}
+points: {{tip: {{link: b, at: [0, -2]}}}}
+loads:
+  - {{type: gravity, g: [0, -10]}}
+  - {{type: force, link: b, point: tip, force: [{force} N/s*time, 0]}}
+motion: {{time: {{from: 0, to: 1, count: {rows}}}, rest: [A.theta, B.theta]}}
+"""
+    r = mk.loads(text).analyze(["A.theta", "B.theta"])
+    return np.asarray(r["A.theta"]), np.asarray(r["B.theta"])
+
+
+@pytest.mark.parametrize("rows", [2, 3, 21])
+@pytest.mark.parametrize("force", [10.0, 100.0, 1000.0])
+def test_two_rods_follow_a_pull_however_far_rows_lie_apart(force: float, rows: int) -> None:
+    # each rod lies along what pulls at its lower end: moments about A and B vanish
+    a, b = _angles(force, rows)
+    pull = force * np.linspace(0, 1, rows)
+    np.testing.assert_allclose(a, np.arctan(pull / 15), atol=1e-9)
+    np.testing.assert_allclose(a + b, np.arctan(pull / 5), atol=1e-9)
+
+
+@pytest.mark.parametrize("rows", [2, 3, 6, 21, 201])
+def test_a_fold_lies_on_the_law_of_the_input_that_moves(rows: int) -> None:
+    # a toggle snaps where the push that grows less the lift of a slide is its largest force
+    knee, law = np.hypot(100, 30), "100 mm*(1 - cos(180 deg*time/(1 s)))"
+    text = f"""
+format: 1
+plane: xy
+units: {{length: mm, force: N}}
+links: {{left: {{}}, right: {{}}, slider: {{}}, lift: {{}}}}
+joints:
+  A: {{type: R, links: [ground, left], point: [0, 0]}}
+  K: {{type: R, links: [left, right], point: [100, 30]}}
+  C: {{type: R, links: [right, slider], point: [200, 0]}}
+  S: {{type: P, links: [ground, slider], point: [200, 0], axis: [1, 0]}}
+  L: {{type: P, links: [ground, lift], point: [100, 30], axis: [0, 1]}}
+points: {{knee: {{link: left, at: [100, 30]}}}}
+loads:
+  - {{type: spring, joint: S, coordinate: s, stiffness: 10 N/mm}}
+  - {{type: force, link: left, point: knee, force: [0, "0.04 N/mm*L.s - 30 N*time/(1 s)"]}}
+motion:
+  time: {{from: 0, to: 2, count: {rows}}}
+  inputs: {{L.s: {{law: expression, value: '{law}'}}}}
+  rest: [A.theta]
+"""
+    r = mk.loads(text).analyze(["A.theta"])
+    found = next(one for one in r.diagnostics if one.code == "snaps-through")
+    time = float(re.search(r"time = ([\d.]+) s", str(found))[1])  # type: ignore[index]
+    angle = np.linspace(0, np.arctan2(30, 100), 200001)
+    # V = k s^2 / 2, s = 2 l (cos a - cos a0): the push that balances at an angle is
+    push = 4 * 10 * knee * (np.cos(angle) - 100 / knee) * np.sin(angle) / np.cos(angle)
+    t = brentq(lambda t: 30 * t - 4 * (1 - np.cos(np.pi * t)) - push.max(), 0.85, 1.0)
+    assert time == pytest.approx(t, abs=1e-8)

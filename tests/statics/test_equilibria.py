@@ -454,19 +454,6 @@ def test_a_held_coordinate_has_its_effort() -> None:
     assert r["A.effort"][0] == pytest.approx(moment, rel=1e-10)
 
 
-def test_friction_is_left_out_and_told() -> None:
-    rubs = {
-        "type": "friction",
-        "joint": "A",
-        "coefficient": 0.1,
-        "radius": 0.02,
-    }
-    m = mk.load(PENDULUM | {"loads": [*PENDULUM["loads"], rubs]})
-    r = m.equilibrium(near={"A.theta": 20})
-    assert r["A.theta"][0] == pytest.approx(0.0, abs=1e-9)
-    assert "friction-left-out" in [note.code for note in r.diagnostics]
-
-
 def test_a_force_that_follows_its_link_leaves_the_stiffness_unsymmetric() -> None:
     """Beck's column of two links: its least stiffness creeps nowhere below the flutter load."""
     beck = {

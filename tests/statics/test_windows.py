@@ -3,7 +3,7 @@ forms."""
 
 from __future__ import annotations
 
-from math import acos, atan2, hypot, pi, sin
+from math import acos, atan2, cos, hypot, pi, sin
 from typing import Any
 
 import numpy as np
@@ -229,3 +229,34 @@ def test_searches_that_all_run_away_are_told_so() -> None:
     assert r["row.status"].tolist() == ["no-equilibrium"]
     (note,) = (note for note in r.diagnostics if note.code == "window-starts")
     assert note.message.startswith("none of the searches from")
+
+
+def test_circuits_between_two_values_of_a_window_are_found() -> None:
+    """A four-bar that the crank moves by four degrees: its two equal bars are hardly longer than
+    half the least gap, and their knee turns over in between. A spring at the knee."""
+    bar = 1.0005
+    slant = acos(1 / bar)
+    joints = {
+        "A": {"type": "R", "links": ["ground", "crank"], "point": [0, 0]},
+        "B": {"type": "R", "links": ["crank", "left"], "point": [1, 0]},
+        "C": {"type": "R", "links": ["left", "right"], "point": [2, sin(slant) * bar]},
+        "D": {"type": "R", "links": ["ground", "right"], "point": [3, 0]},
+    }
+    spring = {"type": "spring", "joint": "C", "coordinate": "theta", "stiffness": 10, "free": slant}
+    short = {
+        "format": 1,
+        "plane": "xy",
+        "units": {"angle": "rad"},
+        "links": {"crank": {}, "left": {}, "right": {}},
+        "joints": joints,
+        "loads": [spring],
+    }
+    r = mk.load(short).equilibrium(window={"A.theta": (-pi + 0.061, pi + 0.061)})
+    # the crank stands straight where the knee is bent most, to either side
+    gap = 2 * bar * cos(slant / 2)
+    crank = acos((10 - gap * gap) / 6)
+    assert r["A.theta"] == pytest.approx([-crank, 0, 0, crank], abs=1e-9)
+    assert sorted(r["C.theta"]) == pytest.approx([0, slant, slant, 4 * slant], abs=1e-9)
+    assert r["row.event"].tolist() == ["stable", "unstable", "unstable", "stable"]
+    (note,) = (note for note in r.diagnostics if note.code == "window-circuits")
+    assert "1 of them at unknown circuits" in str(note.measured)

@@ -75,7 +75,8 @@ void bind_plan_codes(nb::module_& m) {
       .value("BUSHING_FORCE", OUT_BUSHING_FORCE)
       .value("BUSHING_MOMENT", OUT_BUSHING_MOMENT)
       .value("BUSHING_SHIFT", OUT_BUSHING_SHIFT)
-      .value("BUSHING_TURN", OUT_BUSHING_TURN);
+      .value("BUSHING_TURN", OUT_BUSHING_TURN)
+      .value("REST_SHARE", OUT_REST_SHARE);
   nb::enum_<ReadCode>(m, "ReadCode", nb::is_arithmetic(), "What programs of quantities read.")
       .value("OUTPUT", READ_OUTPUT)
       .value("ANGLE", READ_ANGLE)

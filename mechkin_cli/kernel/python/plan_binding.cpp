@@ -119,7 +119,6 @@ void search(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.rows = given.rows();
   r.block = (int)given.integer("block", 0, p.blocks - 1, -1);
   if (r.block < 0) throw nb::type_error("block: missing");
-  if (p.block[r.block].charts) throw nb::value_error("block: the loops of a free motion are not searched");
   r.iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
   r.accept = given.limits("tests", 1)[0];
   const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));

@@ -127,30 +127,30 @@ inline void solve_transposed(Factors f, Pack* b) { MECHKIN_SIZED(solve_transpose
 #undef MECHKIN_AND_B
 #undef MECHKIN_SIZED
 
-// B := A^-1 B, of n x n entries: as `solve` each of its columns, entry for entry.
-inline void solve_columns(Factors f, Pack* b) {
+// B := A^-1 B, of n x `columns` entries: as `solve` each of its columns, entry for entry.
+inline void solve_columns(Factors f, Pack* b, int columns) {
   const int n = f.n;
   int s = 0;
   for (int k = 0; k < n; ++k)
     for (int i = k + 1; i < n; ++i) {
       const Mask c = f.swap[s++];
       if (!any(c)) continue;
-      for (int j = 0; j < n; ++j) {
-        const Pack x = b[k * n + j], y = b[i * n + j];
-        b[k * n + j] = select(c, y, x);
-        b[i * n + j] = select(c, x, y);
+      for (int j = 0; j < columns; ++j) {
+        const Pack x = b[k * columns + j], y = b[i * columns + j];
+        b[k * columns + j] = select(c, y, x);
+        b[i * columns + j] = select(c, x, y);
       }
     }
   const auto subtract_row = [&](int i, int k) {
     const Pack factor = f.a[i * n + k];
     if (is_passed_over<0>(factor)) return;
-    for (int j = 0; j < n; ++j) subtract_product(b[i * n + j], factor, b[k * n + j]);
+    for (int j = 0; j < columns; ++j) subtract_product(b[i * columns + j], factor, b[k * columns + j]);
   };
   for (int k = 0; k < n; ++k)
     for (int i = k + 1; i < n; ++i) subtract_row(i, k);
   for (int k = n - 1; k >= 0; --k) {
     for (int i = k + 1; i < n; ++i) subtract_row(k, i);
-    for (int j = 0; j < n; ++j) b[k * n + j] *= f.a[k * n + k];
+    for (int j = 0; j < columns; ++j) b[k * columns + j] *= f.a[k * n + k];
   }
 }
 

@@ -54,7 +54,7 @@ inline void find_actuated_gains(Balance& balance, int shift, const RateByLeader&
   }
   distribute(p, w, shift);
   read_contacts(p, w, r.base, 1);
-  balance.level = reaction_level(p, w);
+  w.rubbing.level = balance.level = reaction_level(p, w);
 }
 
 // As apply_friction, the efforts acting at the actuators.

@@ -194,7 +194,7 @@ inline void find_gains(Balance& balance, int shift) {
   read_contacts(p, w, r.base, 1);
   if (!r.is_told)
     for (int i = 0; i < p.inputs; ++i) r.effort[i] = w.effort[i];
-  balance.level = reaction_level(p, w);
+  w.rubbing.level = balance.level = reaction_level(p, w);
   for (int f = 0; f < p.frictions; ++f) {
     for (int k = 0; k < p.links; ++k) w.carried[k] = zero_wrench();
     rub(balance, f, Pack(1.0));

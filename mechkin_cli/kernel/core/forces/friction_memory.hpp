@@ -10,7 +10,7 @@ struct Rubbing {
   Wrench* applied;  // links: what they need of their joints, before the tree sums it
   Wrench* drag;     // frictions: what a unit of friction takes from the second link
   Pack *speed, *coefficient, *force, *normal, *state, *at_rest;  // frictions: of the surfaces, and what was found
-  Pack *matrix, *bound, *right, *step, *weight;  // of the small system: squares, then vectors
+  Pack *matrix, *bound, *border, *right, *step, *weight;  // of the small system: squares, then vectors
   Pack *origin, *newton;  // frictions: where a step begins, and Newton's step from there
   Mask* swap;
   Vec3 *axis, *point;  // frictions: now
@@ -22,6 +22,8 @@ struct Rubbing {
   Pack* effort;        // inputs, or actuators: of the drives without friction
   Pack* told;          // frictions x TOLD_NUMBERS, see FrictionTold
   bool is_told;
+  Pack* share;         // frictions: six vectors of rest_share.hpp
+  Pack level;          // the largest reaction without friction
   Pack softness;       // of magnitudes of loads, zero but on the way to a start (friction_solver.hpp)
   Pack self_locking;
 };
@@ -34,11 +36,14 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   r->applied = (Wrench*)take(p.links * sizeof(Wrench));
   r->drag = (Wrench*)take(n * sizeof(Wrench));
   Pack** const vectors[] = {&r->speed, &r->coefficient, &r->force, &r->normal, &r->state,
-                            &r->at_rest, &r->right, &r->step, &r->weight, &r->origin, &r->newton};
+                            &r->at_rest, &r->step, &r->weight, &r->origin, &r->newton};
   for (Pack** each : vectors) *each = (Pack*)take(n * pack);
   r->matrix = (Pack*)take(n * n * pack);
   r->bound = (Pack*)take(n * n * pack);
-  r->swap = (Mask*)take((n * (n - 1) / 2 + 1) * sizeof(Mask));
+  r->border = (Pack*)take((n + 1) * (n + 1) * pack);
+  r->right = (Pack*)take((n + 1) * pack);
+  r->share = (Pack*)take(6 * n * pack);
+  r->swap = (Mask*)take((n * (n + 1) / 2 + 1) * sizeof(Mask));
   r->axis = (Vec3*)take(n * sizeof(Vec3));
   r->point = (Vec3*)take(n * sizeof(Vec3));
   Vec3** const of_contacts[] = {&r->direction, &r->base, &r->load, &r->reach};

@@ -84,7 +84,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_BUSHING_TURN; }
+bool is_output(int type) { return type >= 0 && type <= OUT_REST_SHARE; }
 
 int output_width(int type) {
   switch (type) {
@@ -106,6 +106,7 @@ int output_width(int type) {
     case OUT_FRICTION_POWER:
     case OUT_FRICTION_STATE:
     case OUT_SELF_LOCKING:
+    case OUT_REST_SHARE:
     case OUT_EFFORT: return 1;
     default: return 3;
   }
@@ -120,7 +121,8 @@ unsigned output_demand(int type, int order) {
     case OUT_FRICTION_MOMENT:
     case OUT_FRICTION_POWER:
     case OUT_FRICTION_STATE:
-    case OUT_SELF_LOCKING: return DEMAND_FORCES | to_order[2];
+    case OUT_SELF_LOCKING:
+    case OUT_REST_SHARE: return DEMAND_FORCES | to_order[2];
     case OUT_JERK: return to_order[3];
     case OUT_RATE:
     case OUT_BUSHING_FORCE:

@@ -45,7 +45,8 @@ enum OutputCode : int {
   OUT_BUSHING_FORCE = 38,     // index: load; freedom 1: and its damper, the next load; on the second link
   OUT_BUSHING_MOMENT = 39,    // about the second frame's origin
   OUT_BUSHING_SHIFT = 40,     // its deflection, in the axes of the first frame
-  OUT_BUSHING_TURN = 41
+  OUT_BUSHING_TURN = 41,
+  OUT_REST_SHARE = 42         // of friction at rest, so that nothing has to drive
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).

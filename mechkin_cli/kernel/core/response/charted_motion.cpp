@@ -277,23 +277,31 @@ void ChartedMotion::lay_chart(int lane) {
   const int n = plan_.charts, columns = plan_.columns;
   const double* const weight = starts_[lane].plan->column_weight;
   const auto entry = [&](int i, int c) -> double& { return direction_[(long)(i * columns + c) * lanes_ + lane]; };
+  std::vector<double> rows((std::size_t)n * columns);
+  // of each row the columns that it moves, as far as it is done: of trees without loops mostly one
+  std::vector<std::vector<int>> moved((std::size_t)n);
   for (int i = 0; i < n; ++i) {
+    double* const row = rows.data() + (long)i * columns;
     for (int c = 0; c < columns; ++c)
-      entry(i, c) = plan_.column_block[c] < 0 ? 0.0 : at(end_.tangent, i * columns + c, lane) / weight[c];
+      row[c] = plan_.column_block[c] < 0 ? 0.0 : at(end_.tangent, i * columns + c, lane) / weight[c];
     for (int pass = 0; pass < 2; ++pass) {
       for (int j = 0; j < i; ++j) {
+        const double* const other = rows.data() + (long)j * columns;
         double along = 0.0;
-        for (int c = 0; c < columns; ++c) along += entry(i, c) * entry(j, c);
-        for (int c = 0; c < columns; ++c) entry(i, c) -= along * entry(j, c);
+        for (int c : moved[j]) along += row[c] * other[c];
+        if (along == 0.0) continue;
+        for (int c : moved[j]) row[c] -= along * other[c];
       }
       double square = 0.0;
-      for (int c = 0; c < columns; ++c) square += entry(i, c) * entry(i, c);
+      for (int c = 0; c < columns; ++c) square += row[c] * row[c];
       const double size = std::sqrt(square);
-      for (int c = 0; c < columns; ++c) entry(i, c) /= size;
+      for (int c = 0; c < columns; ++c) row[c] /= size;
     }
+    for (int c = 0; c < columns; ++c)
+      if (row[c] != 0.0) moved[i].push_back(c);
   }
   for (int i = 0; i < n; ++i)
-    for (int c = 0; c < columns; ++c) entry(i, c) /= weight[c];
+    for (int c = 0; c < columns; ++c) entry(i, c) = rows[(std::size_t)i * columns + c] / weight[c];
   // the chart's rows at the new origin
   long base = 0;
   for (int b = 0; b < plan_.blocks; ++b) {

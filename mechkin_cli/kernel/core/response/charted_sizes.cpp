@@ -59,8 +59,9 @@ void ChartedMotion::weigh(int lane) {
   for (int j = 0; j < n; ++j) {
     const double pivot = m[j * n + j];
     lightest_[lane] = std::min(lightest_[lane], pivot);
+    // symmetric: the upper half alone
     for (int r = j + 1; r < n; ++r)
-      for (int c = j + 1; c < n; ++c) m[r * n + c] -= m[r * n + j] * m[j * n + c] / pivot;
+      for (int c = r; c < n; ++c) m[r * n + c] -= m[j * n + r] * m[j * n + c] / pivot;
   }
   if (lightest_start_[lane] == 0.0) lightest_start_[lane] = lightest_[lane];
 }

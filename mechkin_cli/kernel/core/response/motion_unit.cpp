@@ -114,6 +114,7 @@ inline void place_directions(const Plan& p, Workspace& w, ReducedMotion& m, cons
       rate = select(lanes, packs(given.placed_tangent)[d * p.columns + c], rate);
       w.rate[c] = rate;
     }
+    if (has_composites(p)) continue;
     for (int b = 0; b < p.blocks; ++b) move_block(p, w, p.block[b]);
     move_rest(p, w);
     for (int k = 0; k < p.links; ++k) m.twist[d * p.links + k] = w.motion[k].velocity;
@@ -222,7 +223,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& 
   }
 
   const Mask fixed = lanes_placed(given, PLACED);
-  for (int d = 0; d < directions(p); ++d) move_along(p, w, m, d);
+  move_along(p, w, m);
   place_directions(p, w, m, given, fixed);
   const Pack* const input_rate = packs(given.input_rates);
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));

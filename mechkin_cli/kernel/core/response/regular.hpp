@@ -40,7 +40,7 @@ __attribute__((noinline)) Mask is_regular(const Plan& p, Workspace& w, int block
   const int n = at.n;
   if (n > MOST_BY_COLUMNS && at.m == n) {
     for (int e = 0; e < n * n; ++e) room[e] = origin[e];
-    solve_columns(at.lu(), room);
+    solve_columns(at.lu(), room, n);
   } else {
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < at.m; ++i) w.right[i] = origin[i * n + j];

@@ -22,20 +22,6 @@ struct Slid {
   Pack power;
 };
 
-// x := M^-1 x with the factors that solve_motion leaves.
-inline void solve_factored(const Plan& p, const ReducedMotion& m, Pack* x) {
-  const int n = p.charts;
-  const Pack* const l = m.factor;
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < i; ++k) x[i] -= l[i * n + k] * x[k];
-    x[i] = x[i] / l[i * n + i];
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    for (int k = i + 1; k < n; ++k) x[i] -= l[k * n + i] * x[k];
-    x[i] = x[i] / l[i * n + i];
-  }
-}
-
 // What u'' needs of the joints, beside what w.carried has.
 inline void accelerate(const Plan& p, Workspace& w, const ReducedMotion& m, const Pack* second) {
   for (int k = 0; k < p.links; ++k) {

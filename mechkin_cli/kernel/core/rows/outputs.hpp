@@ -3,8 +3,16 @@
 
 #include "forces/drives.hpp"
 #include "forces/powers.hpp"
+#if !MECHKIN_ENCLOSES
+#include "forces/rest_share.hpp"
+#endif
 
 namespace {
+
+#if MECHKIN_ENCLOSES
+// no forces with friction are enclosed
+MECHKIN_INLINE Pack rest_share(const Plan&, const Workspace&) { return Pack(__builtin_nan("")); }
+#endif
 
 // Writes a pack into column `slot` of an array stored column after column; only lanes that are rows.
 struct Writer {
@@ -168,6 +176,7 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     case OUT_FRICTION_POWER: return one(factor * (w.rubbing.force[o.index] * w.rubbing.speed[o.index]));
     case OUT_FRICTION_STATE: return one(w.rubbing.state[o.index]);
     case OUT_SELF_LOCKING: return one(w.rubbing.self_locking);
+    case OUT_REST_SHARE: return one(rest_share(p, w));
     default: return three((-factor) * ground_moment(p, balance->inertia));  // OUT_INERTIA_MOMENT
   }
 }

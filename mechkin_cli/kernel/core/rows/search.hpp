@@ -48,9 +48,9 @@ inline void damped_step(Workspace& w, const BlockMatrices& at, Pack damping) {
 // that no rows are exchanged.
 inline void damped_step_by_band(Workspace& w, const BlockMatrices& at, Pack damping) {
   const Band f = at.band();
-  const int n = at.n;
+  const int n = at.n, closing = at.m - at.charts;
   int wide = 1;  // entries of a row up to the diagonal
-  for (int e = 0, u = 0; e < n; ++e) {
+  for (int e = 0, u = 0; e < closing; ++e) {
     while (f.row[u].end <= e) ++u;
     wide = f.row[e].reach - u > wide ? f.row[e].reach - u : wide;
   }
@@ -58,7 +58,7 @@ inline void damped_step_by_band(Workspace& w, const BlockMatrices& at, Pack damp
   const auto entry = [&](int i, int j) -> Pack& { return normal[i * wide + j - i + wide - 1]; };
   for (int k = 0; k < n * wide; ++k) normal[k] = 0.0;
   for (int u = 0; u < n; ++u) gradient[u] = 0.0;
-  for (int e = 0, first = 0; e < n; ++e) {
+  for (int e = 0, first = 0; e < closing; ++e) {
     while (f.row[first].end <= e) ++first;
     const int reach = f.row[e].reach;
     for (int i = first; i < reach; ++i) {
@@ -89,6 +89,13 @@ inline void damped_step_by_band(Workspace& w, const BlockMatrices& at, Pack damp
     gradient[k] -= sum * entry(k, k);
   }
   for (int i = 0; i < n; ++i) w.right[i] = gradient[i];
+}
+
+// Rows of a chart that say nothing: the loops of a free motion close anywhere along it, by damping near the start.
+inline void leave_free(const Plan& p, Workspace& w) {
+  for (int e = 0; e < p.charts * p.columns; ++e) w.direction[e] = 0.0;
+  for (int s = 0; s < p.states; ++s) w.origin[s] = 0.0;
+  for (int i = 0; i < p.charts; ++i) w.place[i] = 0.0;
 }
 
 // Runs one pack of starts in w.q to the end; returns the residuals.

@@ -22,6 +22,7 @@ void search_rows(const Plan& p, const SearchRequest& r, long begin, long end, ch
     for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.states, s);
     for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
     for (int b = 0; b < r.block; ++b) place_block(p, w, p.block[b]);
+    if (p.block[r.block].charts) leave_free(p, w);
     const Pack residual = search_block(p, w, r.block, r.iterations, r.accept);
     for (int s = 0; s < p.states; ++s) Writer{r.states, r.rows, row, count}.put(s, w.q[s]);
     Writer{r.residual, r.rows, row, count}.put(0, residual);
