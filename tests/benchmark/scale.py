@@ -4,11 +4,14 @@ docs/scale.md.
 
     python -P tests/benchmark/scale.py [--most ROWS] [--up-to NUMBER] [PART...] [--json]
     python -P tests/benchmark/scale.py --kernel [--most ROWS]
+    python -P tests/benchmark/scale.py --text [--most ROWS]
 
 Ten columns of RCSR: positions, rates, an effort and a reaction. Times are by the processor's
 clock, as the machine may be shared. Slopes are of log time over log of what grows: of the last
 step, and of the whole table. `--kernel`: what a run that keeps no rows takes in parts of its calls
-of the kernel alone, and responses of a pendulum with as many rows.
+of the kernel alone, and responses of a pendulum with as many rows. `--text`: CSV beside
+std::to_chars of all its numbers on as many threads as there are processors, Parquet beside pyarrow
+writing the arrays of both tables, by the processor's clock and by that on the wall.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import perf_counter
 
 HERE = Path(__file__).resolve().parent
 RCSR = HERE.parents[1] / "mechanisms" / "dissertation" / "rcsr.yaml"
@@ -173,6 +177,63 @@ def beside_the_kernel(rows: int) -> str:
     return "\n".join(said)
 
 
+WRITTEN = """
+import subprocess, sys
+from pathlib import Path
+from time import perf_counter, process_time
+import numpy as np
+from pyarrow import parquet
+
+here, folder, threads = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3]
+sys.path[:0] = [str(here.parent)]
+from kernel.compiler import compile_with
+
+tables = [parquet.read_table(path) for path in sorted(folder.glob("parquet/*.parquet"))]
+start = process_time(), perf_counter()
+for number, table in enumerate(tables):
+    parquet.write_table(table, folder / f"{number}.peer", compression="zstd")
+print(process_time() - start[0], perf_counter() - start[1])
+numbers = [c.to_numpy() for t in tables for c in t.columns if str(c.type) in ("double", "int64")]
+numbers = np.nan_to_num(np.stack(numbers, axis=1).astype(float))
+numbers.tofile(folder / "numbers")
+program = compile_with(here / "to_chars.cpp", folder / "to_chars", "-O3", "-pthread")
+words = [str(program), str(folder / "numbers"), str(numbers.size), threads, "3"]
+found = subprocess.run(words, capture_output=True, check=True, text=True).stdout.splitlines()
+print(min(found, key=lambda line: float(line.split()[1])))
+"""
+"""In a process of its own, as `PEERS`."""
+
+
+def beside_to_chars(rows: int) -> str:
+    """What CSV and Parquet take in parts of what their numbers take elsewhere."""
+    said = []
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        took: dict[tuple[str, int], tuple[float, float]] = {}
+        for count in (100, rows):
+            path = folder / f"{count}.yaml"
+            path.write_text(long_text(count), encoding="utf-8")
+            for way in ("csv", "parquet"):
+                program = [sys.executable, "-P", "-m", "mechkin_cli", "analyze", str(path)]
+                begun = perf_counter()
+                own = cost([*program, *WAYS[way], "--quiet", "--out", str(folder / way)])[0]
+                took[way, count] = own, perf_counter() - begun
+        threads = str(len(os.sched_getaffinity(0)))
+        words = [sys.executable, "-P", "-c", WRITTEN, str(HERE), str(folder), threads]
+        found = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+        peers = dict(zip(("parquet", "csv"), found.splitlines(), strict=True))
+        for way, peer in (("csv", "to_chars"), ("parquet", "pyarrow")):
+            clocks = []
+            for clock, word in enumerate(("of the processor", "on the wall")):
+                behind = took[way, rows][clock] - took[way, 100][clock]
+                other = float(peers[way].split()[clock])
+                clocks.append(
+                    f"{behind:.2f} s {word}, {behind / other:.2f} times {peer}'s {other:.2f} s"
+                )
+            said.append(f"{rows:,} rows, {way}, behind the start: {'; '.join(clocks)}")
+    return "\n".join(said)
+
+
 def page(lines: Sequence[dict[str, float]]) -> str:
     """The table, as docs/scale.md has it."""
     heads = ["rows"]
@@ -224,10 +285,14 @@ def main() -> None:
     parser.add_argument("--up-to", type=float, default=math.inf, help="of the other parts")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--kernel", action="store_true", help="peaks beside the kernel; responses")
+    parser.add_argument("--text", action="store_true", help="CSV and Parquet beside their peers")
     parser.add_argument("parts", nargs="*", choices=[[], *PARTS], metavar="PART")
     options = parser.parse_args()
     if options.kernel:
         print(beside_the_kernel(round(options.most)))
+        return
+    if options.text:
+        print(beside_to_chars(round(options.most)))
         return
     for name in options.parts or PARTS:
         if name == "rows":
