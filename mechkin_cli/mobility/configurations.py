@@ -118,7 +118,9 @@ def damped_steps(jacobians: Floats, misses: Floats) -> Floats:
     places, _, columns = jacobians.shape
     damping = np.sqrt(np.sum(misses * misses, axis=1))
     damping = np.maximum(damping, tolerances.MOBILITY_DAMPING)
-    above = np.concatenate([jacobians, -misses[:, :, None]], axis=2)
+    # equations that nothing moves, as those out of a plane, ask for no step
+    told = np.any(jacobians != 0.0, axis=(0, 2))
+    above = np.concatenate([jacobians[:, told], -misses[:, told, None]], axis=2)
     below = np.zeros((places, columns, columns + 1))
     below[:, np.arange(columns), np.arange(columns)] = damping[:, None]
     triangle = np.asarray(np.linalg.qr(np.concatenate([above, below], axis=1), mode="r"))

@@ -445,9 +445,15 @@ def rank_of(matrix: Floats, zero: float) -> Rank:
     rows, columns = matrix.shape
     if not matrix.any():  # nothing closes, or welds alone
         return Rank(np.eye(columns), np.eye(rows), np.inf)
-    left, values, right = np.linalg.svd(matrix)
+    # equations that nothing moves, as those out of a plane, are stresses each by itself
+    told = np.flatnonzero(matrix.any(axis=1))
+    still = np.flatnonzero(~matrix.any(axis=1))
+    left, values, right = np.linalg.svd(matrix[told])
     least = tolerances.RANK_ROUNDING * values[0]
     values = np.maximum(values, least)
     rank = int(np.count_nonzero(values > zero * values[0]))
     below = values[rank] if rank < len(values) else least
-    return Rank(right[rank:].T, left[:, rank:], float(values[rank - 1] / below))
+    stresses = np.zeros((rows, rows - rank))
+    stresses[told, : told.size - rank] = left[:, rank:]
+    stresses[still, told.size - rank + np.arange(still.size)] = 1.0
+    return Rank(right[rank:].T, stresses, float(values[rank - 1] / below))
