@@ -45,9 +45,10 @@ def remembered(
             by_name = [(k, _hashable(named[k])) for k in sorted(named)]
             key = (function, *map(_hashable, args), *by_name)
         memo = owner.memo
-        if key not in memo:
-            memo[key] = function(owner, *args, **named)
-        answer: Answer = memo[key]
+        found = memo.get(key, memo)  # which is no answer of its own
+        if found is memo:
+            found = memo[key] = function(owner, *args, **named)
+        answer: Answer = found
         return answer
 
     return cast("Callable[Concatenate[Owner, Arguments], Answer]", recall)

@@ -110,13 +110,13 @@ class Stream:
             if not any(self.branch):
                 self.branch = part.result.mode, part.result.how
             if self.run != SWEEP:
-                error = np.asarray(part.result.quantity("row.energy_error").value)
-                verdicts.measure("energy error", error[part.own])
                 self.ended = ended(part.result, self.ended)
             solved, own = PartRows(self, part.result), part.own
             del part, rows
             yield solved, own
             del solved
+        if not isinstance(self.source, Sweep):
+            verdicts.measure("energy error", np.array([self.source.energy_error]))
 
     @property
     def in_blocks(self) -> bool:
@@ -147,11 +147,11 @@ class Stream:
 
     @cached_property
     def along(self) -> RunParameter | None:
-        """What the run goes along: with its values in some of the rows."""
+        """What the run goes along: with its values in some of the rows, if in any."""
         units, known = self.source.session.problem.units, self.source.session.problem.quantities()
         if not isinstance(self.source, Sweep):
             unit = units.label(known["time"].dimension)
-            return RunParameter("time", self.source.moments, unit)
+            return RunParameter("time", np.empty(0), unit)
         motion = rows_of_start(self.source.session)[0].problem.motion
         time = {} if motion.time is None else {"time": motion.time.written}
         return moving_input(

@@ -31,7 +31,7 @@ __getattr__, __dir__ = lazy_names(
         "edit": "Edited edit_parameters value_text",
         "fields": "is_tiny_length",
         "recording": "precise precise_response record record_response shifting",
-        "source": "BadTable open_data open_file open_text table_path table_text",
+        "source": "BadTable open_data open_file open_text table_path table_text without_collection",
         "spacing": "Spacing",
         "tables": "used_quantities",
         "view": "DrawnBetween Kind ShapeSetting ViewSettings",

@@ -7,7 +7,7 @@ a damping takes power, and puts in none: both matrices are symmetric and positiv
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import sqrt
+from math import pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.building.joints import points_of, square_axes
 from mechkin_cli.diagnostics import Number, nearest_hint
-from mechkin_cli.mechanism import GROUND, GROUND_NAME, UPPER_HALF, Bushing, Frame, cross
+from mechkin_cli.mechanism import GROUND, GROUND_NAME, UPPER_HALF, Bushing, Frame, cross, norm
 from mechkin_cli.tape import Recorded, TraceLost, advice
 from mechkin_cli.units import (
     ANGLE,
@@ -81,10 +81,20 @@ def _axes(
 
 
 def _free(fields: Fields, path: Path, section: schema.BushingFree) -> tuple[float, ...]:
-    return tuple(
+    """The deflection without force, whose turn is less than half a turn."""
+    errors = fields.error_count
+    free = tuple(
         fields.number((*path, axis), getattr(section, axis), LENGTH if i < _SLIDES else ANGLE)
         for i, axis in enumerate(_AXES)
     )
+    turn = norm((free[3], free[4], free[5]))
+    if fields.error_count == errors and not turn < pi:
+        text = "a bushing without force is turned by less than half a turn"
+        hint = "write the shorter turn, the other way round, or draw its halves turned"
+        fields.error(
+            "bushing-turn", path, text, hint, measured=fields.units.text(float(turn), ANGLE)
+        )
+    return free
 
 
 def _matrix(

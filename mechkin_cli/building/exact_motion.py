@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import MotionInputs, ResponseProblem
-    from mechkin_cli.schema import ListedTime
+    from mechkin_cli.schema import HeldCoordinate, ListedTime
     from mechkin_cli.tape import ExactRecorder
     from mechkin_cli.units import Dimension
 
@@ -81,16 +82,35 @@ def exact_moments(
     return over.picked(listed, np.arange(over.rows))
 
 
-def start_motion(fields: Fields, response: ResponseProblem, recorder: ExactRecorder) -> ExactMotion:
+def exact_moment(fields: Fields, path: Path, text: str | None, over: ExactRows) -> Any:
+    """The moment of equilibria in the file's unit, 0 where none is written."""
+    number = 0.0 if text is None else fields.written(path, text, TIME)
+    return over.picked([number], np.zeros(over.rows, dtype=np.intp))
+
+
+def start_motion(
+    fields: Fields,
+    response: ResponseProblem,
+    recorder: ExactRecorder,
+    held: Mapping[str, HeldCoordinate] = MappingProxyType({}),
+) -> ExactMotion:
     """The first moment of a response, as that of `mechanism.response.first_motion` in doubles.
 
     Args:
         fields: units and parameters, recorded.
         response: with its start recorded and nothing driven.
         recorder: holds the recorded numbers.
+        held: coordinates that are held, as written.
     """
-    in_si: dict[str, Any] = {"time": float(response.moments.values[0])}
-    written: dict[str, Any] = {"time": float(response.moments.written[0])}
+    first = response.moments.part(slice(1))
+    in_si: dict[str, Any] = {"time": float(first.values[0])}
+    written: dict[str, Any] = {"time": float(first.written[0])}
+    for name, one in held.items():
+        path: Path = (response.section, response.name, "driven", name, "at")
+        dimension = dimension_of(name.rpartition(".")[2])
+        value = fields.written(path, one.at, dimension)
+        written[name] = (value, 0.0, 0.0, 0.0)
+        in_si[name] = (fields.units.to_si(value, dimension), 0.0, 0.0, 0.0)
     for item in response.start:
         if item.value is not None:
             orders = (item.value, 0.0 if item.rate is None else item.rate, 0.0, 0.0)

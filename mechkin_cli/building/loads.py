@@ -243,7 +243,8 @@ class LoadBuilder:
             self._value((*path, section.type, i), text, dimension, "time")
             for i, text in enumerate(texts)
         )
-        self._put(LinkLoad(section.type, section.link, (x, y, z), section.axes, point))
+        called = section.name or ""
+        self._put(LinkLoad(section.type, section.link, (x, y, z), section.axes, point, called))
 
     def _add_to_joint(self, path: Path, section: ForceOnJoint | TorqueOnJoint) -> None:
         coordinate: Literal["theta", "s"] = "theta" if isinstance(section, TorqueOnJoint) else "s"
@@ -252,7 +253,7 @@ class LoadBuilder:
         dimension = MOMENT if is_angle(coordinate) else FORCE
         name = f"{section.joint}.{coordinate}"
         value = self._value((*path, "value"), section.value, dimension, name)
-        self._put(JointLoad(section.joint, coordinate, value))
+        self._put(JointLoad(section.joint, coordinate, value, section.name or ""))
 
     def _add_between(self, path: Path, section: SpringBetweenPoints | DamperBetweenPoints) -> None:
         first, second = section.between

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from math import pi, prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -35,6 +35,7 @@ from mechkin_cli.building.spacing import (
 )
 from mechkin_cli.diagnostics import InvalidFile, nearest_hint
 from mechkin_cli.expressions import Expression
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import (
     GROUND,
     GROUND_NAME,
@@ -47,6 +48,7 @@ from mechkin_cli.mechanism import (
     MotionInputs,
     Part,
     RigidLink,
+    SpacedMoments,
     Span,
     Vector,
     frame_about,
@@ -75,6 +77,7 @@ from mechkin_cli.tape import differ, of_numbers, with_rates, within
 from mechkin_cli.tolerances import (
     LARGEST_NUMBER,
     LARGEST_TURNS,
+    LONG_RUN,
     MOST_NUMBERS,
 )
 from mechkin_cli.units import ANGLE, TIME
@@ -84,6 +87,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.show import Floats
+    from mechkin_cli.units import UnitSystem
 
 _RATES = ("rate", "acceleration", "jerk")
 _ORDERS = ("value", *_RATES)
@@ -264,6 +268,7 @@ def spaced_moments(
     *,
     in_parts: bool = False,
     rows: NDArray[np.int64] | None = None,
+    held: bool = True,
 ) -> Clock:
     """The moments of a section, which run forwards; errors are noted, with one moment.
 
@@ -274,11 +279,16 @@ def spaced_moments(
         per_row: numbers that a row takes.
         in_parts: whether the rows may be made part by part, where they are many.
         rows: the numbers of those that are wanted; None: all, or a sample of many.
+        held: whether the moments of very many rows are held, too; else they are made as they are
+            wanted.
     """
     errors = fields.error_count
-    found = spacing(fields, path, section, TIME, None if in_parts else per_row)
+    found = spacing(fields, path, section, TIME, None if in_parts or not held else per_row)
     if rows is None and in_parts and is_long(found.rows, per_row):
         rows = sampled(found.rows)
+    is_made = not held and found.rows > LONG_RUN
+    if is_made:
+        rows = np.array([0, found.rows - 1])
     written = found.values(rows)
     last = found.first
     if fields.error_count == errors:
@@ -289,9 +299,19 @@ def spaced_moments(
     elif found.rows > 1 and rise * LARGEST_NUMBER <= 1.0:
         text = f"time stands still over {found.rows} rows"
         fields.error("zero-step", (*path, "to"), text, "give a later moment, or count: 1")
-        written, found, rows = written[:1], found._replace(rows=1), None
+        written, found, rows, is_made = written[:1], found._replace(rows=1), None, False
+    if is_made:
+        made = _made_as_wanted(fields.units, found)
+        return Clock(made, found.first, last, found.rows)
     moments = Moments(fields.units.to_si(written.copy(), TIME), written)
     return Clock(moments, found.first, last, found.rows, rows)
+
+
+def _made_as_wanted(units: UnitSystem, found: Spacing) -> Moments:
+    """The moments of a spacing, of which none is held."""
+    steps, in_si = found.steps, units.conversion(TIME)
+    of_kernel = _kernel.SpacedTimes(*steps, float(in_si.multiplier), in_si.divisor)
+    return cast("Moments", SpacedMoments(found.rows, steps.at, in_si.apply, of_kernel))
 
 
 class _Read(NamedTuple):
@@ -430,10 +450,10 @@ def _driven(
     name = str(path[-1])
     joint, _, coordinate = name.rpartition(".")
     written = orders.copy()
-    in_si = [
-        np.asarray(fields.units.to_si(written[k].copy(), dimension_of(coordinate, k)))
-        for k in range(4)
-    ]
+    in_si = []
+    for k in range(4):
+        values = np.asarray(fields.units.to_si(written[k], dimension_of(coordinate, k)))
+        in_si.append(values.copy() if np.may_share_memory(values, written) else values)
     for word, values in zip(_ORDERS, in_si, strict=True):
         if not within(values, LARGEST_NUMBER):
             largest = float(np.abs(values).max())

@@ -17,7 +17,12 @@ from typing import TYPE_CHECKING, Any
 from mechkin_cli import idle
 from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields
 from mechkin_cli.building.datum import exact_numbers
-from mechkin_cli.building.exact_motion import exact_moments, exact_motion, start_motion
+from mechkin_cli.building.exact_motion import (
+    exact_moment,
+    exact_moments,
+    exact_motion,
+    start_motion,
+)
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.responses import settled
 from mechkin_cli.expressions import Move, Quantity
@@ -149,10 +154,8 @@ def precise_response(
     """
     response = first.response
     assert response is not None
-    if response.driven:
+    if response.driven and response.search is None:
         raise TraceLost("a coordinate that is driven by a law of time")
-    if response.search is not None:
-        raise TraceLost("a coordinate that is found where the loads balance")
     recorder = ExactRecorder()
     file, name = built.file, response.name
     with exact_numbers(recorder):
@@ -160,10 +163,15 @@ def precise_response(
         base = built.problem
         problem = build_problem(fields, file, motion=base.motion, moving=base.responses)
         recorded = replace(problem.responses[name], held=())
-        path = (response.section, name, "time")
+        path = (response.section, name)
         over = ExactRows(recorder, response.rows)
-        moments = exact_moments(fields, path, file.responses[name].time, over)
-        motion = start_motion(fields, recorded, recorder)
+        if response.search is None:
+            moments = exact_moments(fields, (*path, "time"), file.responses[name].time, over)
+            motion = start_motion(fields, recorded, recorder)
+        else:
+            section = file.equilibria[name]
+            moments = exact_moment(fields, (*path, "time"), section.time, over)
+            motion = start_motion(fields, recorded, recorder, section.driven)
         both = [fields.units.to_si(moments, TIME), moments]
     _refuse_errors(fields)
     problem = replace(response_problem(problem, recorded, first.motion), hold_idle=first.hold_idle)

@@ -18,7 +18,6 @@ import numpy as np
 
 from mechkin_cli import idle, mobility, tolerances
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_coordinate
-from mechkin_cli.building.friction import without_friction
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, spaced_moments
 from mechkin_cli.building.spacing import has_too_many_rows
@@ -328,9 +327,12 @@ class _ResponseBuilder:
         # moments, and orders of what is driven: rows may be taken block by block
         self.per_row = 2 + 8 * len(section.driven or ())
         clock = self._clock(path, section)
-        driven = build_inputs(
-            self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
-        ) or MotionInputs((), 1)
+        driven: MotionInputs | None = None
+        if section.driven:
+            driven = build_inputs(
+                self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
+            )
+        driven = driven or MotionInputs((), 1)
         self._check_ties(path, driven)
         self._check_jumps(path, driven)
         efforts = self._efforts(path, section, name)
@@ -368,17 +370,12 @@ class _ResponseBuilder:
         ) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
-        start = build_start(fields, path, section, self.joints)
         frictions = mechanism.frictions
-        if sum(one.value is not None for one in start) == 1:
-            # rows tell in which interval it holds
-            mechanism = replace(mechanism, frictions=())
-        else:
-            mechanism = without_friction(fields, mechanism, path)
+        mechanism = replace(mechanism, frictions=())
         return ResponseProblem(
             name=name,
             place=fields.document.key_place(path),
-            start=start,
+            start=build_start(fields, path, section, self.joints),
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             driven=driven.inputs,
@@ -445,9 +442,14 @@ class _ResponseBuilder:
         path: Path = (known.section, name)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
+        start = known.start
+        if known.search is None:
+            start = build_start(self.fields, path, section, self.joints)
+        else:
+            mechanism = replace(mechanism, frictions=known.mechanism.frictions)
         return replace(
             known,
-            start=build_start(self.fields, path, section, self.joints),
+            start=start,
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             mechanism=self._kept(mechanism),
@@ -509,10 +511,11 @@ class _ResponseBuilder:
         place = (*path, "time")
         errors = self.fields.error_count
         if isinstance(section.time, TimeSection):
-            clock = spaced_moments(self.fields, place, section.time, self.per_row)
+            held = bool(section.driven)
+            clock = spaced_moments(self.fields, place, section.time, self.per_row, held=held)
         else:
             clock = self._listed(place, section.time)
-        if clock.time.written.size < 2 and self.fields.error_count == errors:
+        if clock.time.rows < 2 and self.fields.error_count == errors:
             text = "a response needs two moments, its start and a later one"
             self.fields.error("one-moment", place, text, "give time: {from, to, step}")
         return clock
@@ -584,7 +587,7 @@ class _ResponseBuilder:
         if self.fields.error_count > errors:
             return value
         most = tolerances.MOST_RESPONSE_STEPS
-        span = float(moments.values[-1] - moments.values[0])
+        span = moments.duration
         if not value > 0.0:
             self.fields.error("zero-step", path, "a step takes a positive time", "write 1e-3 s")
         elif span > most * value:

@@ -93,6 +93,26 @@ def is_long(run_rows: int, per_row: int | None) -> bool:
     return run_rows > LONG_RUN or run_rows * (per_row or 1) > MOST_NUMBERS
 
 
+class Steps(NamedTuple):
+    """Value number i of `rows` is (first + i*step) / over in whole numbers that doubles hold
+    exactly; where `over` is 0, first + i*step in doubles, and `last` the last one. The kernel makes
+    moments by the same operations (`SpacedTimes`)."""
+
+    rows: int
+    first: float
+    step: float
+    over: float = 0.0
+    last: float = 0.0
+
+    def at(self, rows: NDArray[np.int64]) -> Floats:
+        """The values of some rows, by their numbers (rows,)."""
+        if self.over:
+            whole = int(self.first) + rows.astype(np.int64) * int(self.step)
+            return np.asarray(whole, dtype=np.float64) / self.over
+        values = np.asarray(self.first + rows * self.step, dtype=np.float64)
+        return np.where(rows == self.rows - 1, self.last, values)
+
+
 class Spacing(NamedTuple):
     """Equally spaced values, one for each row: from the first towards the last by a positive step,
     or without one to the last. `name` is that of recorded numbers among these."""
@@ -111,10 +131,24 @@ class Spacing(NamedTuple):
             if self.step is None:
                 return recorder.take(self.name, partial(_counted, self.rows), self.first, self.last)
             return recorder.take(self.name, _stepped, self.first, self.last, self.step)
-        every = np.arange(self.rows) if rows is None else rows
+        return self.steps.at(np.arange(self.rows) if rows is None else rows)
+
+    @property
+    def steps(self) -> Steps:
+        """How the values follow from the numbers of their rows; none of them is recorded."""
+        gaps, rows = self.rows - 1, self.rows
         if self.step is not None:
-            return self._by_step(every, self.step if self.last >= self.first else -self.step)
-        return np.full(every.shape, self.first) if self.rows == 1 else self._by_count(every)
+            step = self.step if self.last >= self.first else -self.step
+            (start, stride), power = _whole_numbers(self.first, step)
+            if power <= EXACT and _is_exact(start, stride, rows):
+                return Steps(rows, start, stride, float(power))
+            return Steps(rows, self.first, step, last=self.first + gaps * step)
+        if not gaps:
+            return Steps(rows, self.first, 0.0, last=self.first)
+        (start, end), power = _whole_numbers(self.first, self.last)
+        if power * gaps <= EXACT and _is_exact(start * gaps, end - start, rows):
+            return Steps(rows, start * gaps, end - start, float(power * gaps))
+        return Steps(rows, self.first, self.last / gaps - self.first / gaps, last=self.last)
 
     @property
     def _recorder(self) -> Recorder | None:
@@ -124,25 +158,6 @@ class Spacing(NamedTuple):
                 recorder: Recorder = number.recorder
                 return recorder
         return None
-
-    def _by_step(self, rows: NDArray[np.int64], step: float) -> Floats:
-        """first + i*step."""
-        (start, stride), power = _whole_numbers(self.first, step)
-        numerators = _exact(start, stride, self.rows, rows)
-        if numerators is None or power > EXACT:
-            return np.asarray(self.first + rows * step, dtype=np.float64)
-        return numerators / float(power)
-
-    def _by_count(self, rows: NDArray[np.int64]) -> Floats:
-        """From `first` to `last`, both included."""
-        (start, end), power = _whole_numbers(self.first, self.last)
-        gaps = self.rows - 1
-        numerators = _exact(start * gaps, end - start, self.rows, rows)
-        if numerators is None or power * gaps > EXACT:
-            rise = self.last / gaps - self.first / gaps
-            values = np.asarray(self.first + rows * rise, dtype=np.float64)
-            return np.where(rows == gaps, self.last, values)
-        return numerators / float(power * gaps)
 
 
 def _counted(count: int, first: float, last: float) -> Floats:
@@ -168,12 +183,9 @@ def _whole_numbers(*values: float) -> tuple[tuple[int, ...], int]:
     return tuple(int(number * power) for number in decimals), power
 
 
-def _exact(start: int, stride: int, count: int, rows: NDArray[np.int64]) -> Floats | None:
-    """start + i*stride in some of `count` rows as doubles; None where one of all is not an exact
-    double."""
-    if max(abs(start), abs(stride), abs(start + (count - 1) * stride)) > EXACT:
-        return None
-    return np.asarray(start + rows.astype(np.int64) * stride, dtype=np.float64)
+def _is_exact(start: int, stride: int, count: int) -> bool:
+    """Whether start + i*stride of all `count` rows are exact doubles."""
+    return max(abs(start), abs(stride), abs(start + (count - 1) * stride)) <= EXACT
 
 
 def spacing(

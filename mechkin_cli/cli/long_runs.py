@@ -149,7 +149,9 @@ def stream_to(
     wanted = None if command.table is None else names
     if run != SWEEP:
         tell(f"integrating {run}")
-    stream = stream_run(model, run, None, 1, wanted, command.mode, *packing)
+    # of a response, with the verdicts on its rows
+    measured = () if command.summary_only or run == SWEEP else ("row.energy_error",)
+    stream = stream_run(model, run, measured, 1, wanted, command.mode, *packing)
     tables = [_Table(layout, command, stream) for layout in stream.layouts]
     style = CsvStyle(
         threads=command.threads, units=command.units, decimal_comma=command.decimal_comma

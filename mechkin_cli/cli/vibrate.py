@@ -107,6 +107,7 @@ def _files(
     files = {
         f"{stem}.csv": _csv(rows) for stem, rows in vibration_tables(found, space, told).items()
     }
+    files["modes.svg"] = found.picture().encode("utf-8")
     if told is not None:
         try:
             files["response.svg"] = plots.answer_image(told, "svg")

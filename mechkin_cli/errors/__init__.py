@@ -7,14 +7,12 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.errors.errors import *
-    from mechkin_cli.errors.response import repetition as repetition
     from mechkin_cli.errors.rows import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "errors": "Errors true_values",
-        "response": "repetition",
+        "errors": "Errors repetition true_values",
         "rows": "KernelRows NotRepeated Repeated WORDS reason_of wide_run",
     },
 )

@@ -17,12 +17,28 @@ import numpy as np
 from mechkin_cli.arguments import a_text, texts
 from mechkin_cli.building import used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
-from mechkin_cli.errors.response import repetition
-from mechkin_cli.errors.rows import BALANCE, DENSE, SUMMARY, WORDS, NotRepeated, Repeated, reason_of
+from mechkin_cli.errors.motion import FINE
+from mechkin_cli.errors.response import RepeatedResponse, ResponseRows
+from mechkin_cli.errors.rest import EquilibriumRows, RepeatedEquilibria, RestRows
+from mechkin_cli.errors.rows import (
+    BALANCE,
+    CROSSED,
+    DENSE,
+    IMPACTS,
+    SUMMARY,
+    WORDS,
+    NotRepeated,
+    Repeated,
+    reason_of,
+    sticking,
+    wide_run,
+)
 from mechkin_cli.expressions import Expression, NumberNode, Quantity, Vector, exact_literal
 from mechkin_cli.mechanism import read_for
 from mechkin_cli.record import replace
+from mechkin_cli.response import ResponseResult
 from mechkin_cli.show import Listed, Listing
+from mechkin_cli.statics import EquilibriumResult, UnsolvedText
 from mechkin_cli.tables import (
     ALL_COLUMNS,
     LOST,
@@ -34,14 +50,14 @@ from mechkin_cli.tables import (
     row_texts,
     worst_column,
 )
-from mechkin_cli.tape import DoubleDoubles, bounded, exactly
+from mechkin_cli.tape import DoubleDoubles, TraceLost, bounded, exactly
 from mechkin_cli.tolerances import NO_DOUBT
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.sweep import Readable
+    from mechkin_cli.sweep import Readable, Result
     from mechkin_cli.tables import FloatArray, TableColumn
     from mechkin_cli.units import UnitSystem
 
@@ -67,6 +83,32 @@ class TrueSource(Protocol):
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by its dotted name, in SI."""
         ...
+
+
+def repetition(result: Result) -> Repeated:
+    """A run in double-double.
+
+    Raises:
+        NotRepeated: why it is not repeated.
+    """
+    text = result.session.text
+    try:
+        if isinstance(result, EquilibriumResult):
+            rows = EquilibriumRows(result, result.chosen.precise)
+            return RepeatedEquilibria(result, rows)
+        if isinstance(text, UnsolvedText):
+            return Repeated(result, RestRows(result, text.session))
+        if not isinstance(result, ResponseResult):
+            return Repeated(result, wide_run(result))
+        if result.problem.mechanism.frictions:
+            raise NotRepeated(sticking(result.problem))
+        if result.impacts:
+            raise NotRepeated(IMPACTS)
+        if result.report is not None and result.report.crossings:
+            raise NotRepeated(CROSSED)
+        return RepeatedResponse(result, ResponseRows(result, result.chosen.precise, FINE))
+    except (TraceLost, LookupError, ValueError) as lost:
+        raise NotRepeated(str(lost)) from None
 
 
 def true_values(expression: Expression, source: TrueSource) -> list[DoubleDoubles]:

@@ -430,7 +430,7 @@ class Marching:
             accelerations, missing = self.motion.corrected(closed, forces, response)
             if not np.isfinite(missing).all():
                 return None, 0.4
-            new = joined([self.state_rates(closed.states, closed.rates), accelerations])
+            new = joined([state_rates(self.layout, closed.states, closed.rates), accelerations])
             change = self._measured(np.abs((new - rates).high), new.high, states, h)
             rates = new
             if change <= self.tolerance * tolerances.SWEPT:
@@ -478,7 +478,7 @@ class Marching:
     ) -> DoubleDoubles:
         """All rates at the nodes as the last step would go on, or as they are."""
         if before is None:
-            rates = joined([self.state_rates(here.states, here.rates), here.accelerations])
+            rates = joined([state_rates(self.layout, here.states, here.rates), here.accelerations])
             return DoubleDoubles(np.repeat(rates.high, times.size, axis=1))
         where = (times - before.begin.time) / before.length
         return values_at(where, before.rates)
@@ -494,22 +494,6 @@ class Marching:
         ]
         return max(parts, default=0.0)
 
-    def state_rates(self, states: DoubleDoubles, rates: DoubleDoubles) -> DoubleDoubles:
-        """Derivatives of the states by the rates of the columns: of an orientation (0, w) q/2."""
-        slopes = DoubleDoubles(np.zeros(states.shape))
-        for carrier in self.layout.carriers:
-            kind, s, c = carrier.part.type, carrier.state, carrier.column
-            freedoms = len(kind.freedoms)
-            if kind.states == freedoms:
-                slopes[s : s + freedoms] = rates[c : c + freedoms]
-                continue
-            w, (a, x, y, z) = rates[c : c + 3], states[s : s + 4]
-            slopes[s] = -0.5 * (w[0] * x + w[1] * y + w[2] * z)
-            slopes[s + 1] = 0.5 * (w[0] * a + w[1] * z - w[2] * y)
-            slopes[s + 2] = 0.5 * (w[1] * a + w[2] * x - w[0] * z)
-            slopes[s + 3] = 0.5 * (w[2] * a + w[0] * y - w[1] * x)
-        return slopes
-
     def _powers(self, places: MotionPlaces, directions: Floats) -> DoubleDoubles:
         """Powers (2, places) of what has no potential, and of what dampers take."""
         powers = DoubleDoubles(np.zeros((2, places.time.size)))
@@ -523,6 +507,23 @@ class Marching:
                 total = total + forces[k] * moved[k]
             powers[number] = sign * total
         return powers
+
+
+def state_rates(layout: Layout, states: DoubleDoubles, rates: DoubleDoubles) -> DoubleDoubles:
+    """Derivatives of the states by the rates of the columns: of an orientation (0, w) q/2."""
+    slopes = DoubleDoubles(np.zeros(states.shape))
+    for carrier in layout.carriers:
+        kind, s, c = carrier.part.type, carrier.state, carrier.column
+        freedoms = len(kind.freedoms)
+        if kind.states == freedoms:
+            slopes[s : s + freedoms] = rates[c : c + freedoms]
+            continue
+        w, (a, x, y, z) = rates[c : c + 3], states[s : s + 4]
+        slopes[s] = -0.5 * (w[0] * x + w[1] * y + w[2] * z)
+        slopes[s + 1] = 0.5 * (w[0] * a + w[1] * z - w[2] * y)
+        slopes[s + 2] = 0.5 * (w[1] * a + w[2] * x - w[0] * z)
+        slopes[s + 3] = 0.5 * (w[2] * a + w[0] * y - w[1] * x)
+    return slopes
 
 
 LONGER = 4.0

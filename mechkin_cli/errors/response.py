@@ -1,5 +1,5 @@
-"""The rows of a response in double-double: its motion repeated from the numbers of the text; and
-which repetition a run has.
+"""The rows of a free motion in double-double; those of a response: its motion repeated from the
+numbers of the text.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.errors.motion import (
-    FINE,
     ROUGH,
     Fineness,
     ForcedMotion,
@@ -22,8 +21,6 @@ from mechkin_cli.errors.motion import (
 )
 from mechkin_cli.errors.rows import (
     AS_DRIVEN,
-    CROSSED,
-    IMPACTS,
     OTHER_RATES,
     STOP,
     TABLE_LOADS,
@@ -33,58 +30,140 @@ from mechkin_cli.errors.rows import (
     as_number,
     as_parts,
     reason_of,
-    sticking,
-    wide_run,
 )
 from mechkin_cli.expressions import Quantity, exact_literal
 from mechkin_cli.mechanism import Varying, response_quantities
 from mechkin_cli.plan import Demand
 from mechkin_cli.response import ResponseResult, integrate, prepare, watched_stop
 from mechkin_cli.session import Ask, Chart, PreciseConstants, PreciseInputs, RowInputs
-from mechkin_cli.statics import EquilibriumResult
-from mechkin_cli.tape import DoubleDoubles, TraceLost, double_doubles, exactly
+from mechkin_cli.tape import DoubleDoubles, double_doubles, exactly
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.response import Beginning
+    from mechkin_cli.response import Beginning, FreeResult
     from mechkin_cli.session import KernelInputs, Precise, Session
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep import Result
 
-
-BALANCED = (
-    "the place of an equilibrium is found to a tolerance: row.imbalance tells how far loads balance"
-)
-"""Why rows of equilibria are not repeated."""
 
 DENSE = 16
 """Moments to a step of the run in doubles at which the turns of cut joints are looked up: they
 move by much less than half a turn in between."""
 
 
-def repetition(result: Result) -> Repeated:
-    """A run in double-double.
+class FreeRows(KernelRows):
+    """The rows of a free motion in double-double, at places that are found anew."""
 
-    Raises:
-        NotRepeated: why it is not repeated.
-    """
-    if isinstance(result, EquilibriumResult):
-        raise NotRepeated(BALANCED)
-    if not isinstance(result, ResponseResult):
-        return Repeated(result, wide_run(result))
-    if result.problem.mechanism.frictions:
-        raise NotRepeated(sticking(result.problem))
-    if result.impacts:
-        raise NotRepeated(IMPACTS)
-    if result.report is not None and result.report.crossings:
-        raise NotRepeated(CROSSED)
-    try:
-        return RepeatedResponse(result, ResponseRows(result, result.chosen.precise, FINE))
-    except (TraceLost, LookupError, ValueError) as lost:
-        raise NotRepeated(str(lost)) from None
+    result: FreeResult
+
+    @cached_property
+    def places(self) -> tuple[MotionPlaces, Bools]:
+        """The rows with their rates and accelerations, and which of them are known."""
+        raise NotImplementedError
+
+    @cached_property
+    def first(self) -> PreciseInputs:
+        """The start's inputs, and behind them the locked idle freedoms."""
+        return self.precise.inputs(self.result.chosen)
+
+    @cached_property
+    def held(self) -> Floats:
+        """What is driven and the locked idle freedoms (held inputs, 2), kernel units."""
+        independent = len(self.result.response.independent)
+        held: Floats = np.ascontiguousarray(self.first.values[independent:, :, 0])
+        return held
+
+    @cached_property
+    def motion(self) -> ForcedMotion:
+        """What moves."""
+        return ForcedMotion(self.result.session, self.precise, self.held)
+
+    @cached_property
+    def charts(self) -> Floats:
+        """The run's chart about each row (freedoms, columns, rows)."""
+        freedoms = self.result.session.plan.charts
+        charts: Floats = self.result.chart.direction.reshape(freedoms, -1, self.result.rows)
+        return charts
+
+    def of_moments(self, in_si: Floats, written: Floats) -> PreciseInputs:
+        """What is held in all rows, at moments (2, rows) in s and in the file's unit."""
+        count = self.result.rows
+        held = np.repeat(self.held[:, :, None], count, axis=2)
+        still = np.zeros(held.shape)
+        whole = np.zeros((len(held), count))
+        return PreciseInputs(held, still, still, still, held, whole, in_si, None, {"time": written})
+
+    def efforts_along(self, wanted: Wanted) -> list[Any]:
+        """The run's efforts along the coordinate of a quantity, in SI."""
+        response = self.precise.problem.response
+        assert response is not None
+        at = (wanted.owner, wanted.coordinate)
+        amounts = [e.amount for e in response.efforts if e.acts_at == at]
+        constant = [amount for amount in amounts if not isinstance(amount, Varying)]
+        numbers = iter(double_doubles(self.precise.tape(constant)))
+        return [
+            amount if isinstance(amount, Varying) else DoubleDoubles(*next(numbers))
+            for amount in amounts
+        ]
+
+    @property
+    def known(self) -> Bools:
+        """Rows that are repeated (rows,)."""
+        return self.places[1]
+
+    def _row_inputs(self, inputs: KernelInputs, session: Session) -> RowInputs:
+        places = self.places[0]
+        if not session.plan.charts:
+            raise NotRepeated(AS_DRIVEN)
+        rates, seconds = (as_parts(self.motion.along(self.charts, part)) for part in places[2:4])
+        nothing = np.zeros((0, self.result.rows))
+        chart = Chart(self.result.chart.direction, rates, seconds, nothing)
+        rows = super()._row_inputs(inputs, session)
+        return rows._replace(guess=as_parts(places.states), chart=chart)
+
+    def unknown(self) -> MotionPlaces:
+        """Rows of which nothing is known yet."""
+        count, plan = self.result.rows, self.result.session.plan
+        time, states, rates, seconds = (
+            DoubleDoubles(np.full(shape, np.nan))
+            for shape in ((count,), (plan.states, count), *[(plan.columns, count)] * 2)
+        )
+        return MotionPlaces(time, states, rates, seconds, self.result.row_states.turns)
 
 
-class ResponseRows(KernelRows):
+class RepeatedFree(Repeated):
+    """As `Repeated`; with the efforts that the run gives."""
+
+    result: FreeResult
+    wide: FreeRows
+
+    def quantity(self, name: str) -> Quantity:
+        """As `Repeated.quantity`."""
+        wanted = self.problem.quantities().get(name)
+        if wanted is not None and self.result.is_given(wanted):
+            return Quantity(self._effort(wanted), wanted.dimension)  # type: ignore[arg-type]
+        return super().quantity(name)
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """As `Repeated.read`, without what needs no run."""
+        super().read(q for q in wanted if not self.result.is_given(q))
+
+    def _effort(self, wanted: Wanted) -> DoubleDoubles:
+        """The sum of the response's efforts along a coordinate."""
+        total = DoubleDoubles(np.zeros(self.rows))
+        for amount in self.wide.efforts_along(wanted):
+            if isinstance(amount, Varying):
+                law = self.problem.load_laws[amount.number]
+                if law.expression is None:
+                    raise NotRepeated(TABLE_LOADS)
+                effort = law.expression.evaluate(self.quantity, self.units, exact_literal)
+                total = total + exactly(effort.value)
+            else:
+                total = total + amount
+        total[~self.wide.known] = np.nan
+        return total
+
+
+class ResponseRows(FreeRows):
     """The rows of a response in double-double.
 
     Args:
@@ -113,10 +192,7 @@ class ResponseRows(KernelRows):
         in_si, written = np.full((2, 2, count), np.nan)
         for own, numbers in zip((in_si, written), moments, strict=True):
             own[:, : self._requested] = numbers[:, : self._requested]
-        held = np.repeat(self._held[:, :, None], count, axis=2)
-        still = np.zeros(held.shape)
-        whole = np.zeros((len(held), count))
-        return PreciseInputs(held, still, still, still, held, whole, in_si, None, {"time": written})
+        return self.of_moments(in_si, written)
 
     @cached_property
     def _requested(self) -> int:
@@ -125,16 +201,6 @@ class ResponseRows(KernelRows):
         assert own is not None
         count = min(own.values.size, requested.size)
         return int(np.count_nonzero(own.values[:count] == requested[:count]))
-
-    @cached_property
-    def _first(self) -> PreciseInputs:
-        """The start's inputs, and behind them the locked idle freedoms."""
-        return self.precise.inputs(self.result.chosen)
-
-    @cached_property
-    def _held(self) -> Floats:
-        independent = len(self.result.response.independent)
-        return np.ascontiguousarray(self._first.values[independent:, :, 0])
 
     @cached_property
     def _begun(self) -> Beginning:
@@ -146,10 +212,6 @@ class ResponseRows(KernelRows):
         return prepared.begun
 
     @cached_property
-    def _motion(self) -> ForcedMotion:
-        return ForcedMotion(self.result.session, self.precise, self._held)
-
-    @cached_property
     def march(self) -> tuple[list[LegendreStep], str]:
         """The motion up to the last row at a moment of the text: its steps, and why they end
         before it."""
@@ -159,7 +221,7 @@ class ResponseRows(KernelRows):
         if last == 0:
             return [], ""
         layout = self.result.session.layout
-        marching = Marching(self._motion, layout, self._turned_at, self.fineness)
+        marching = Marching(self.motion, layout, self._turned_at, self.fineness)
         return marching.march(begin, orthonormal(self._begun.tangents[:, :, None]), end)
 
     def _times(self, rows: Any) -> DoubleDoubles:
@@ -169,7 +231,7 @@ class ResponseRows(KernelRows):
 
     def _beginning(self) -> MotionPlaces:
         """The first moment, at rest or with the rates of the start."""
-        chosen, first, begun = self.result.chosen, self._first, self._begun
+        chosen, first, begun = self.result.chosen, self.first, self._begun
         state = self.result.start.state
         assert state is not None
         count = len(first.values)
@@ -235,16 +297,10 @@ class ResponseRows(KernelRows):
     def _rows(self) -> tuple[MotionPlaces, DoubleDoubles, Bools]:
         """Rows on the motion, work put in and lost up to each (2, rows); and which are known."""
         result, (steps, _) = self.result, self.march
-        count, plan = result.rows, result.session.plan
+        count = result.rows
         known = np.zeros(count, dtype=np.bool_)
-
-        def nothing(*shape: int) -> DoubleDoubles:
-            return DoubleDoubles(np.full((*shape, count), np.nan))
-
-        columns = (nothing(plan.columns), nothing(plan.columns))
-        turns = result.row_states.turns
-        every = MotionPlaces(nothing(), nothing(plan.states), *columns, turns)
-        work, times = nothing(2), self._times(slice(None))
+        turns, every = result.row_states.turns, self.unknown()
+        work, times = DoubleDoubles(np.full((2, count), np.nan)), self._times(slice(None))
 
         def put(some: Any, places: MotionPlaces, own: DoubleDoubles) -> None:
             for part, new in zip(every[1:4], places[1:4], strict=True):
@@ -274,17 +330,16 @@ class ResponseRows(KernelRows):
         rows = np.flatnonzero(known)
         if not rows.size:
             return places
-        closed, good = self._motion.settled(places.at(rows), self._charts[:, :, rows])
+        closed, good = self.motion.settled(places.at(rows), self.charts[:, :, rows])
         for part, new in zip(places[1:4], closed[1:4], strict=True):
             part[:, rows] = new
         known[rows] = good
         return places
 
     @cached_property
-    def _charts(self) -> Floats:
-        """The run's chart about each row (freedoms, columns, rows)."""
-        freedoms = self.result.session.plan.charts
-        return self.result.chart.direction.reshape(freedoms, -1, self.result.rows)
+    def places(self) -> tuple[MotionPlaces, Bools]:
+        """The rows on the motion."""
+        return self._rows[0], self._rows[2]
 
     @cached_property
     def exchanged(self) -> DoubleDoubles:
@@ -297,36 +352,8 @@ class ResponseRows(KernelRows):
         """Why rows are not repeated; "" where all are."""
         return self.march[1] or (STOP if self._requested < self.result.rows else "")
 
-    def efforts_along(self, wanted: Wanted) -> list[Any]:
-        """The response's efforts along the coordinate of a quantity, in SI."""
-        response = self.precise.problem.response
-        assert response is not None
-        at = (wanted.owner, wanted.coordinate)
-        amounts = [e.amount for e in response.efforts if e.acts_at == at]
-        constant = [amount for amount in amounts if not isinstance(amount, Varying)]
-        numbers = iter(double_doubles(self.precise.tape(constant)))
-        return [
-            amount if isinstance(amount, Varying) else DoubleDoubles(*next(numbers))
-            for amount in amounts
-        ]
 
-    @property
-    def known(self) -> Bools:
-        """Rows that are repeated (rows,)."""
-        return self._rows[2]
-
-    def _row_inputs(self, inputs: KernelInputs, session: Session) -> RowInputs:
-        places = self._rows[0]
-        if not session.plan.charts:
-            raise NotRepeated(AS_DRIVEN)
-        rates, seconds = (as_parts(self._motion.along(self._charts, part)) for part in places[2:4])
-        nothing = np.zeros((0, self.result.rows))
-        chart = Chart(self.result.chart.direction, rates, seconds, nothing)
-        rows = super()._row_inputs(inputs, session)
-        return rows._replace(guess=as_parts(places.states), chart=chart)
-
-
-class RepeatedResponse(Repeated):
+class RepeatedResponse(RepeatedFree):
     """As `Repeated`; with work, what is dissipated, and the response's efforts."""
 
     result: ResponseResult
@@ -351,27 +378,9 @@ class RepeatedResponse(Repeated):
                 raise NotRepeated(reason)
             value: Any = self.wide.exchanged[0 if own.kind == "work" else 1]
             return Quantity(value, own.dimension)
-        wanted = self.problem.quantities().get(name)
-        if wanted is not None and self.result.is_given(wanted):
-            return Quantity(self._effort(wanted), wanted.dimension)  # type: ignore[arg-type]
         return super().quantity(name)
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """As `Repeated.read`, without what needs no run."""
         own = response_quantities()
-        super().read(q for q in wanted if q.name not in own and not self.result.is_given(q))
-
-    def _effort(self, wanted: Wanted) -> DoubleDoubles:
-        """The sum of the response's efforts along a coordinate."""
-        total = DoubleDoubles(np.zeros(self.rows))
-        for amount in self.wide.efforts_along(wanted):
-            if isinstance(amount, Varying):
-                law = self.problem.load_laws[amount.number]
-                if law.expression is None:
-                    raise NotRepeated(TABLE_LOADS)
-                effort = law.expression.evaluate(self.quantity, self.units, exact_literal)
-                total = total + exactly(effort.value)
-            else:
-                total = total + amount
-        total[~self.wide.known] = np.nan
-        return total
+        super().read(q for q in wanted if q.name not in own)

@@ -167,6 +167,9 @@ class Expression(NamedTuple):
             ExpressionError: unknown name, dimensions that do not fit, a value outside a function's
                 domain; the offset is that of the offending part.
         """
+        first = self.nodes[0]
+        if len(self.nodes) == 1 and isinstance(first, Name):
+            return _look_up(first, resolve)
         self.reject_ambiguous_units(lambda word: _exists(word, resolve))
         literal = literal or _literal
         stack: list[Operand] = []

@@ -625,6 +625,7 @@ class StepLimits:
         radius: float,
         narrow: float,
         arc_steps: int,
+        arc_work: float,
         straight: bool,
     ) -> None: ...
 
@@ -778,6 +779,7 @@ def respond(
     tangent: Floats,
     begin: float,
     times: Floats,
+    spaced: SpacedTimes | None = None,
     stops: Sequence[tuple[int, int, int, float, int, int]],
     driven: DrivenLaws | None,
     tolerance: float,
@@ -795,6 +797,23 @@ def respond(
     block: int = 0,
     taker: Callable[[int, int, list[Any]], bool] | None = None,
 ) -> tuple[Any, ...]: ...
+
+class SpacedTimes:
+    """Equally spaced moments in s, none of which is held: number k is (first + k step) / over, in
+    whole numbers; where `over` is 0, first + k step, and `last` the last one; then over the
+    divisor, or times the multiplier where that is 1."""
+
+    def __init__(
+        self,
+        count: int,
+        first: float,
+        step: float,
+        over: float,
+        last: float,
+        multiplier: float,
+        divisor: float,
+    ) -> None: ...
+    def at(self, row: int) -> float: ...
 
 class DrivenLaws:
     def __init__(

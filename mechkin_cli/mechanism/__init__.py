@@ -60,7 +60,7 @@ __getattr__, __dir__ = lazy_names(
         "model": "Amount Bushing Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring "
         "Tensor UPPER_HALF Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "
-        "ORDERS Parameter Rest Span",
+        "ORDERS Parameter Rest SpacedMoments Span",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "
         "FrictionLaw JointType Loss Motion Part Rubbing SECOND Screw rubbing_words screws_at",
         "pairs": "FREE JOINT_TYPES PLANE_JOINT_TYPES PLAY PLAY_ANGLE dimension_of guide_letter "

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli.diagnostics import SHORT_LIST
@@ -197,9 +198,25 @@ class _Load:
         return ()
 
     @property
+    def fastened_at(self) -> tuple[Attached, ...]:
+        """The points of links at which it is fastened, if any."""
+        return self.ends
+
+    @property
     def owner(self) -> str:
         """The name of its quantities, if it has some."""
         return ""
+
+    @property
+    def called(self) -> str:
+        """Its own name in the file, if it is a force or torque that has one."""
+        return ""
+
+    @property
+    def of_one(self) -> LinkLoad | JointLoad | None:
+        """A force or moment of one in its direction; None where it has no direction, or none that
+        is known without its values."""
+        return None
 
     def renumbered(self, numbers: Mapping[int, int]) -> Self:
         """The load with the laws of its values under other numbers."""
@@ -215,6 +232,13 @@ class LinkLoad(_Load):
     value: tuple[Amount, Amount, Amount]
     axes: Literal["ground", "link"] = "ground"
     point: Vector = ZERO
+    called: str = ""
+
+    @property
+    def of_one(self) -> LinkLoad | None:
+        """As of every load."""
+        found = _direction(self.value)
+        return None if found is None else replace(self, value=(found[0], found[1], found[2]))
 
     @property
     def amounts(self) -> tuple[Amount, ...]:
@@ -235,6 +259,13 @@ class JointLoad(_Load):
     joint: str
     coordinate: str
     amount: Amount
+    called: str = ""
+
+    @property
+    def of_one(self) -> JointLoad | None:
+        """As of every load."""
+        found = _direction((self.amount,))
+        return None if found is None else replace(self, amount=found[0])
 
     @property
     def name(self) -> str:
@@ -339,6 +370,12 @@ class Bushing(_Load):
         return self.name
 
     @property
+    def fastened_at(self) -> tuple[Attached, ...]:
+        """As of every load."""
+        origins = (frame.o for frame in self.frames)
+        return tuple(Attached(*end) for end in zip(self.links, origins, strict=True))
+
+    @property
     def reads_rates(self) -> bool:
         """As of every load."""
         return self.damps
@@ -355,6 +392,16 @@ class Bushing(_Load):
 
 
 Load = LinkLoad | JointLoad | Spring | Damper | Bushing
+
+
+def _direction(amounts: tuple[Amount, ...]) -> list[float] | None:
+    """Numbers of length one as those of a load; of one that varies alone, along its axis."""
+    constant = [0.0 if isinstance(amount, Varying) else float(amount) for amount in amounts]
+    varies = [float(isinstance(amount, Varying)) for amount in amounts]
+    if any(varies):
+        return varies if sum(varies) == 1.0 and not any(constant) else None
+    size = sqrt(sum(amount * amount for amount in constant))
+    return [amount / size for amount in constant] if size > 0.0 else None
 
 
 def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:

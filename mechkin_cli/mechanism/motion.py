@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.diagnostics import Diagnostic, Place
+    from mechkin_cli.kernel import _kernel
     from mechkin_cli.mechanism.constraint import InputConstraint
     from mechkin_cli.show import Floats
     from mechkin_cli.tape import ExactRows, Tape
@@ -78,6 +79,61 @@ class Moments(NamedTuple):
 
     values: Floats
     written: Floats
+
+    @property
+    def rows(self) -> int:
+        """How many there are."""
+        return int(self.values.size)
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last, s."""
+        return float(self.values[-1] - self.values[0])
+
+    def part(self, rows: slice) -> Moments:
+        """Those of some neighbouring rows."""
+        return Moments(self.values[rows], self.written[rows])
+
+
+class SpacedMoments:
+    """What `Moments` has, of very many that are equally spaced: they are made as they are wanted.
+
+    Args:
+        rows: how many.
+        written: gives them in the file's units, by the numbers of rows.
+        in_si: makes moments in the file's units (rows,) those in s.
+        steps: by which the kernel makes them.
+    """
+
+    def __init__(
+        self,
+        rows: int,
+        written: Callable[[NDArray[np.int64]], Floats],
+        in_si: Callable[[Floats], Floats],
+        steps: _kernel.SpacedTimes,
+    ) -> None:
+        self.rows, self.steps = rows, steps
+        self._written, self._in_si = written, in_si
+
+    @property
+    def values(self) -> Floats:
+        """In s (rows,), all of them."""
+        return self.part(slice(None)).values
+
+    @property
+    def written(self) -> Floats:
+        """In the file's units (rows,), all of them."""
+        return self.part(slice(None)).written
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last, s."""
+        return self.steps.at(self.rows - 1) - self.steps.at(0)
+
+    def part(self, rows: slice) -> Moments:
+        """Those of some neighbouring rows."""
+        written = self._written(np.arange(*rows.indices(self.rows)))
+        return Moments(self._in_si(written.copy()), written)
 
 
 class Limit(NamedTuple):

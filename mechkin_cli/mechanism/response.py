@@ -177,7 +177,7 @@ class ResponseProblem:
     @property
     def rows(self) -> int:
         """Number of rows asked for."""
-        return int(self.moments.values.size)
+        return self.moments.rows
 
     @property
     def independent(self) -> list[tuple[str, str]]:
@@ -238,8 +238,7 @@ def first_motion(response: ResponseProblem, units: UnitSystem) -> MotionInputs:
     """
     still = [_started(one, units) for one in response.start if one.value is not None]
     moving = [_at_first(item) for item in response.driven]
-    moments = Moments(response.moments.values[:1], response.moments.written[:1])
-    return MotionInputs((*still, *moving), 1, moments)
+    return MotionInputs((*still, *moving), 1, response.moments.part(slice(1)))
 
 
 def _started(one: StartValue, units: UnitSystem) -> DrivenInput:

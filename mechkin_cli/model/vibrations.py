@@ -13,7 +13,7 @@ from mechkin_cli.arguments import a_whole_number, texts
 from mechkin_cli.expressions import parse
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import ColumnLayout, TableLayout
-from mechkin_cli.vibration import Vibration, freed, played
+from mechkin_cli.vibration import Vibration, freed, played, swung
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,8 +22,13 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis import Design
     from mechkin_cli.arguments import Setting
+    from mechkin_cli.building import ViewSettings
     from mechkin_cli.sweep import Result
     from mechkin_cli.vibration import Freed
+
+
+MOST_PANELS = 60
+"""Modes on a picture, of the lowest frequencies."""
 
 
 class Moving(Solvable, Protocol):
@@ -37,6 +42,11 @@ class Moving(Solvable, Protocol):
     @property
     def runs(self) -> tuple[str, ...]:
         """The names of its runs."""
+        ...
+
+    @property
+    def view_settings(self) -> ViewSettings:
+        """How its pictures are drawn."""
         ...
 
     def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
@@ -88,6 +98,21 @@ class _Source(NamedTuple):
         """A page in which the modes are played."""
         page, _ = view.view_page(list(self._modes(found)), modes=False)
         return view.Page(page) if path is None else view.write_view(path, page)
+
+    def pictured(self, found: Vibration) -> str:
+        """A picture of the modes, with arrows along which they move."""
+        result = self._result()
+        place = self._freed(result)
+        modes = [
+            view.ShownMode(
+                f"mode {k + 1}: {frequency:.4g} Hz",
+                swung(place, result, self.row, np.asarray(shape.real)),
+            )
+            for k, (shape, frequency) in enumerate(
+                zip(found.shapes.T[:MOST_PANELS], found.frequencies, strict=False)
+            )
+        ]
+        return view.mode_picture(modes, self.model.view_settings)
 
     def _result(self) -> Result:
         (analysis,) = self.model.analyses(self.run)

@@ -1,9 +1,9 @@
 """A response in blocks of rows, each of which may be forgotten when the next one is taken.
 
 The kernel marches on in a thread of its own and hands on the rows of a block as it has reached them
-(core/response), so it takes the very steps that it takes where all rows are held. The motion is
-gone through twice: how it ends, and the energies by which its errors are measured, are known behind
-its last row alone.
+(core/response), so it takes the very steps that it takes where all rows are held. How many rows a
+motion with stops has, and the energies by which `row.energy_error` is measured, are known behind
+its last row alone: where they are wanted before, the motion is gone through twice.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism import CrossingEnd, Span, read_for
+from mechkin_cli.mechanism import Span, read_for
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response.report import motion_of, under_way
-from mechkin_cli.response.rows import Prepared, RunEnd, block_of, run_end
+from mechkin_cli.response.rows import Prepared, RunEnd, block_of, run_end, why_held
 from mechkin_cli.response.runs import integrated, integrated_rows, prepare, read
-from mechkin_cli.sweep import Part, bends
+from mechkin_cli.sweep import Part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,9 +30,11 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.mechanism import Problem, ResponseProblem, Wanted
     from mechkin_cli.response.report import MotionRows
-    from mechkin_cli.response.result import Energies
+    from mechkin_cli.response.result import Energies, ResponseResult
     from mechkin_cli.session import Packing, Session
-    from mechkin_cli.show import Floats
+
+
+_ENERGY_ERROR = "row.energy_error"
 
 
 class _Whole(NamedTuple):
@@ -56,6 +58,7 @@ class ResponseBlocks:
         self._one: Prepared = prepare(problem, response, packing, session)
         self._packing = packing
         self.names = tuple(dict.fromkeys(quantities))
+        self._taken: Energies | None = None  # of the rows that have been taken so far
 
     @property
     def session(self) -> Session:
@@ -70,12 +73,8 @@ class ResponseBlocks:
     @property
     def run_rows(self) -> int:
         """The rows of the table: those of the file, or up to a stop."""
-        return self._whole.end.rows if self.in_blocks else self._one.response.rows
-
-    @property
-    def moments(self) -> Floats:
-        """Of the rows, in the file's unit (rows,)."""
-        return self._one.response.moments.written
+        one = self._one
+        return self._whole.end.rows if self.in_blocks and one.response.stops else one.response.rows
 
     @property
     def driven(self) -> tuple[str, ...]:
@@ -100,50 +99,57 @@ class ResponseBlocks:
 
     @property
     def in_blocks(self) -> bool:
-        """Whether the rows are not held: there are many, and the motion goes on in one way. Behind
-        an impact, and up to a jump of a slope, it is another one; and which reactions are unique
-        where constraints are redundant goes by all rows."""
+        """Whether the rows are not held: there are many, and the motion goes on in one way."""
         one = self._one
-        stops = one.response.stops
-        limits = any(isinstance(stop, CrossingEnd) and stop.limit for stop in stops)
-        return (
-            one.response.rows > self.block_rows
-            and one.begun is not None
-            and not limits
-            and not bends(one.free.problem)
-            and not one.free.is_redundant
-        )
+        is_long = one.response.rows > self.block_rows
+        return is_long and one.begun is not None and not why_held(one)
 
     def parts(self) -> Iterator[Part]:
         """The rows in order, block by block; one block, where they are held."""
         if not self.in_blocks:
             (result,) = integrated([self._one], self._packing)
             read(result, self.names)
+            self._take(result)
             yield Part(result, slice(0, result.rows))
             return
-        end, energies = self._whole
-        done = 0
+        rows, done, self._taken = self.run_rows, 0, None
+        if _ENERGY_ERROR in self.names:
+            _ = self._whole  # before another motion is under way
         for motion in self._marched():
-            count = min(motion.states.shape[1], end.rows - done)
+            end = self._end_at(motion)
+            count = min(motion.states.shape[1], rows - done)
             if count > 0:
-                yield self._part(motion, end, Span(done, count, end.rows), energies)
+                yield self._part(motion, end, Span(done, count, rows))
             done += count
         # rows that the motion did not come to
         nothing = replace(motion, states=np.zeros_like(motion.states))
-        while done < end.rows:
-            count = min(self.block_rows, end.rows - done)
-            yield self._part(nothing, end, Span(done, count, end.rows), energies)
+        while done < rows:
+            count = min(self.block_rows, rows - done)
+            yield self._part(nothing, end, Span(done, count, rows))
             done += count
 
-    def _part(
-        self, motion: MotionRows, end: RunEnd, place: Span, energies: Energies | None
-    ) -> Part:
+    def _end_at(self, motion: MotionRows) -> RunEnd:
+        """How the motion ends, as some of its rows tell: that they are reached, and the last of
+        them all."""
+        if self._one.response.stops:
+            return self._whole.end
+        every = self._one.response.rows
+        return run_end(self._one, motion.report, motion.count if motion.report.is_over else every)
+
+    def _part(self, motion: MotionRows, end: RunEnd, place: Span) -> Part:
         result = block_of(self._one, motion, end, place)
         read(result, self.names)
-        result.energies = energies
+        self._take(result)
+        result.run_energies = lambda: self._whole.energies
         stops = [self._one.response.stops[end.report.stop].words] if end.is_stopped else []
         result.run_events = (*[""] * (end.rows > len(stops)), *stops)
         return Part(result, slice(0, place.rows))
+
+    def _take(self, result: ResponseResult) -> None:
+        found = result.energies_with(self._taken)
+        if found is not None and result.report is not None:
+            found = found.between(result.report, self._one.free.layout.length)
+        self._taken = found
 
     @cached_property
     def _whole(self) -> _Whole:
@@ -151,15 +157,22 @@ class ResponseBlocks:
         energies: Energies | None = None
         every, done = self._one.response.rows, 0
         for motion in self._marched():
-            report, count = motion.report, motion.states.shape[1]
+            report = motion.report
             end = run_end(self._one, report, motion.count if report.is_over else every)
-            count = min(count, end.rows - done)
+            count = min(motion.states.shape[1], end.rows - done)
             if count > 0:
                 result = block_of(self._one, motion, end, Span(done, count, every))
                 read(result, ())
                 energies = result.energies_with(energies)
             done += count
-        return _Whole(end, energies)
+        return _Whole(end, energies and energies.between(report, self._one.free.layout.length))
+
+    @property
+    def energy_error(self) -> float:
+        """The largest of the rows, when all have been taken; nan where nothing moves or works."""
+        found = self._taken
+        error = None if found is None else found.error(np.array([found.missing]))
+        return float("nan") if error is None else float(error[0])
 
     def _marched(self) -> Iterator[MotionRows]:
         """The motion in blocks of rows, as they are reached; the report of the last one is that of

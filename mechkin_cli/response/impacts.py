@@ -93,7 +93,7 @@ def stopped_at_start(result: ResponseResult, moved: MotionRows) -> MotionRows:
             end=MotionEnd.STOPPED,
             stop=number,
             rows=1,
-            time=float(result.response.moments.values[0]),
+            time=float(result.response.moments.part(slice(1)).values[0]),
             crossings=[],
             touches=[],
         )

@@ -140,6 +140,7 @@ def integrate(
     method: int = 0,
     block: int = 0,
     taker: Taker | None = None,
+    spaced: _kernel.SpacedTimes | None = None,
 ) -> list[MotionRows]:
     """Integrates motions of plans of one structure, each from its beginning, packed into lanes,
     from time `begin` (s) over the rows' `times` (rows,).
@@ -147,7 +148,8 @@ def integrate(
     `stops` go with the values that the plans watch, in order; `driven` with their inputs;
     `straight`: branch points are passed along the smooth continuation. A `taker` takes the rows of
     one motion in blocks of so many as they are reached, all but the last of them, which are given
-    back: their first one has the number `report.first`.
+    back: their first one has the number `report.first`. With one the times may be `spaced`, of
+    which none is held.
 
     Raises:
         ValueError: times that do not rise from `begin` on.
@@ -159,6 +161,7 @@ def integrate(
         tangent=np.ascontiguousarray([start.tangents.ravel() for _, start in starts]),
         begin=begin,
         times=np.ascontiguousarray(times),
+        spaced=spaced,
         stops=list(stops),
         driven=driven,
         tolerance=tolerance,
@@ -377,9 +380,7 @@ def _held(free: Session, report: MotionReport) -> Reason:
 
 
 def _runs_away(response: ResponseProblem, report: MotionReport) -> bool:
-    moments = response.moments.values
-    duration = float(moments[-1] - moments[0])
-    return report.growth * duration > tolerances.RUNAWAY
+    return report.growth * response.moments.duration > tolerances.RUNAWAY
 
 
 def _long_step(units: UnitSystem, report: MotionReport) -> Reason:

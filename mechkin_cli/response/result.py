@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -66,14 +66,28 @@ ENERGIES = ("row.kinetic_energy", "row.potential_energy")
 
 
 class Energies(NamedTuple):
-    """What a balance of energies over many rows is measured by, J: kinetic and potential energy of
-    the first row with a position; the largest part of the balance, and the largest potential energy
-    of any row."""
+    """The balance of energies over many rows, J: kinetic and potential energy of the first row with
+    a position; the largest part of the balance, the largest potential energy, and the most that is
+    missing in any row."""
 
     kinetic: float
     potential: float
-    largest: float
-    level: float
+    largest: float = 0.0
+    level: float = 0.0
+    missing: float = 0.0
+
+    def error(self, missing: Floats) -> Floats | None:
+        """What is missing beyond rounding in parts of the largest; None where nothing moves or
+        works."""
+        if not self.largest > 0.0:
+            return None
+        rounding = tolerances.ENERGY_ROUNDING * self.level
+        found: Floats = np.maximum(missing - rounding, 0.0) / self.largest
+        return found
+
+    def between(self, report: MotionReport, length: float) -> Energies:
+        """With the largest kinetic energy between the rows of a motion; `length` in m."""
+        return self._replace(largest=max(self.largest, length * length * report.energy))
 
 
 class FreeResult(Result):
@@ -198,7 +212,7 @@ class ResponseResult(FreeResult):
         report: how the motion ended.
         rebounds: at limits of coordinates, in order.
 
-    `energies` are those of the whole run, where these are some of its rows.
+    `run_energies` gives those of the whole run, where these are some of its rows.
     """
 
     def __init__(
@@ -220,7 +234,7 @@ class ResponseResult(FreeResult):
         self.events, self.report = tuple(events), report
         self.rebounds = tuple(rebounds)
         self.other_loads: tuple[OtherLoads, ...] = ()
-        self.energies: Energies | None = None
+        self.run_energies: Callable[[], Energies | None] | None = None
 
     def take_others(self, others: Sequence[OtherLoads]) -> None:
         """Takes loads that are as good as those of the rows, as of limits that share a freedom:
@@ -317,20 +331,22 @@ class ResponseResult(FreeResult):
     def energy_error(self) -> Floats:
         """|T + V - T0 - V0 - work + dissipated| beyond the rounding of V, in parts of the largest
         of them over all rows and of T between them (rows,); nan where nothing moves or works."""
+        if self.report is None:
+            return self._nothing
+        found = self.run_energies() if self.run_energies else self.energies_with(None)
+        if found is None:
+            return self._nothing
+        found = found.between(self.report, self.session.layout.length)
+        error = found.error(self._missing(found))
+        return self._nothing if error is None else error
+
+    def _missing(self, since: Energies) -> Floats:
+        """|T + V - T0 - V0 - work + dissipated| of the rows (rows,), J."""
         kinetic, potential = self._mechanical
         work, lost = self.exchanged
-        found = self.energies or self.energies_with(None)
-        if found is None or self.report is None:
-            return self._nothing
-        length = self.session.layout.length
-        largest = max(found.largest, length * length * self.report.energy)
-        if not largest > 0.0:
-            return self._nothing
-        gained = potential - found.potential
-        missing = ((kinetic - found.kinetic) + gained) - (work - lost)
-        rounding = tolerances.ENERGY_ROUNDING * found.level
-        error: Floats = np.maximum(np.abs(missing) - rounding, 0.0) / largest
-        return error
+        gained = potential - since.potential
+        missing: Floats = np.abs(((kinetic - since.kinetic) + gained) - (work - lost))
+        return missing
 
     @property
     def _mechanical(self) -> tuple[Floats, Floats]:
@@ -347,12 +363,14 @@ class ResponseResult(FreeResult):
         if not solved.size:
             return before
         kinetic, potential = (energy[solved] for energy in self._mechanical)
-        first = before or Energies(float(kinetic[0]), float(potential[0]), 0.0, 0.0)
+        first = before or Energies(float(kinetic[0]), float(potential[0]))
         work, lost = self.exchanged[:, solved]
         parts = np.abs([kinetic, potential - first.potential, work, lost])
+        missing = self._missing(first)
         return first._replace(
             largest=max(first.largest, float(parts.max())),
             level=max(first.level, float(np.abs(potential).max())),
+            missing=max(first.missing, float(missing[solved].max())),
         )
 
     @property

@@ -9,14 +9,21 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism import DrivenInput, Moments, MotionInputs, Span, dimension_of
+from mechkin_cli.mechanism import (
+    CrossingEnd,
+    DrivenInput,
+    Moments,
+    MotionInputs,
+    Span,
+    dimension_of,
+)
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.response.integration import ending
 from mechkin_cli.response.jumps import before_jump
 from mechkin_cli.response.report import MotionEnd
 from mechkin_cli.response.result import ResponseResult
 from mechkin_cli.session import Chart, input_unit
-from mechkin_cli.sweep import SweepRows
+from mechkin_cli.sweep import SweepRows, bends
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
@@ -54,7 +61,7 @@ def rows_problem(
     every = response.moments
     end = place.first + place.rows - (stop is not None)
     rows = slice(place.first, end)
-    moments = Moments(every.values[rows], every.written[rows])
+    moments = every.part(rows)
     driven = tuple(_part(item, rows) for item in response.driven)
     if stop is not None:
         written = float(free.problem.units.from_si(stop, TIME))
@@ -132,6 +139,17 @@ def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
     return block_of(one, moved, end, Span(0, end.rows, end.rows))
 
 
+def why_held(one: Prepared) -> str:
+    """Why all rows must be held at once; "" where they need not. Behind an impact, and up to a jump
+    of a slope, the motion is another one; and which reactions are unique where constraints are
+    redundant goes by all rows."""
+    if any(isinstance(stop, CrossingEnd) and stop.limit for stop in one.response.stops):
+        return "as its limits may end or turn its motion"
+    if bends(one.free.problem):
+        return "as the slope of a function jumps"
+    return "as constraints are redundant" if one.free.is_redundant else ""
+
+
 def refuse_many_rows(one: Prepared, variants: int = 1) -> None:
     """Rows are held up to a limit.
 
@@ -142,10 +160,15 @@ def refuse_many_rows(one: Prepared, variants: int = 1) -> None:
     per_row = plan.states + plan.charts * (plan.columns + 2)
     if rows * per_row * variants > tolerances.MOST_NUMBERS:
         most = tolerances.MOST_NUMBERS // (per_row * variants)
+        cure = (
+            "take them block by block with stream(run=...), or write them with mechkin analyze "
+            "--format csv or parquet"
+        )
+        if why := why_held(one):
+            cure = f"it is held whole, {why}: take a larger step"
         raise UsageError(
             f"the response {one.response.name} has too many rows to be held at once, {rows} (limit "
-            f"{most}); take them block by block with stream(run=...), or write them with mechkin "
-            "analyze --format csv or parquet"
+            f"{most}); {cure}"
         )
 
 
@@ -171,7 +194,8 @@ def run_end(one: Prepared, report: MotionReport, reached: int) -> RunEnd:
         count = reached
         if report.rows:
             # a stop at the moment of the last row before it has that row
-            row = float(one.response.moments.values[report.rows - 1])
+            last = slice(report.rows - 1, report.rows)
+            row = float(one.response.moments.part(last).values[0])
             count -= abs(report.time - row) <= tolerances.SAME_MOMENT * abs(row)
     return RunEnd(report, count, reached, report.rows < reached and report.rows < count)
 

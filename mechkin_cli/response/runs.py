@@ -17,6 +17,7 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
     CrossingEnd,
     MotionInputs,
+    SpacedMoments,
     eliminated,
     read_for,
     response_problem,
@@ -276,7 +277,9 @@ def integrated_rows(
     """The motions of variants that share what the kernel takes once, as they begin; the `taker` is
     that of `integrate`."""
     first = together[0]
-    response, times = first.response, first.response.moments.values
+    response, moments = first.response, first.response.moments
+    spaced = moments.steps if taker and isinstance(moments, SpacedMoments) else None
+    times = moments.part(slice(1) if spaced else slice(None)).values
     starts = []
     for one in together:
         assert one.begun is not None
@@ -297,6 +300,7 @@ def integrated_rows(
         packing=packing,
         block=block,
         taker=taker,
+        spaced=spaced,
     )
 
 

@@ -30,7 +30,7 @@ from mechkin_cli.schema.base import (
 )
 from mechkin_cli.schema.curves import EXAMPLES
 from mechkin_cli.schema.file import AnyFile, MechanismFile
-from mechkin_cli.schema.loads import EXAMPLES_OF_BUSHINGS
+from mechkin_cli.schema.loads import EXAMPLES_OF_LOADS
 from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.renamed import with_old_keys
 from mechkin_cli.schema.responses import EXAMPLES_BY_KEY, EXAMPLES_OF_EQUILIBRIA
@@ -228,7 +228,7 @@ BY_KEY: Final[dict[str, Any]] = {
 }
 
 BY_SECTION: Final[dict[tuple[str, str], Any]] = {
-    **EXAMPLES_OF_BUSHINGS,
+    **EXAMPLES_OF_LOADS,
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
     **EXAMPLES_OF_EQUILIBRIA,

@@ -113,7 +113,14 @@ BETWEEN: Final = ELEMENT | dict.fromkeys(
 )
 
 
-class ForceOnLink(InRuns):
+class NamedLoad(InRuns):
+    """A force or torque that may have a name."""
+
+    name: Name | None = None
+    """Its name, by which small motions take it as an input; left out, it has none."""
+
+
+class ForceOnLink(NamedLoad):
     """A force at a point of a link."""
 
     type: Literal["force"]
@@ -127,7 +134,7 @@ class ForceOnLink(InRuns):
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
 
 
-class TorqueOnLink(InRuns):
+class TorqueOnLink(NamedLoad):
     """A couple on a link."""
 
     type: Literal["torque"]
@@ -139,7 +146,7 @@ class TorqueOnLink(InRuns):
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
 
 
-class ForceOnJoint(InRuns):
+class ForceOnJoint(NamedLoad):
     """A force on the coordinate s of a joint: it acts on the second link, against the first."""
 
     advice: ClassVar[dict[str, str]] = {"force": "write value: 5 N"}
@@ -153,7 +160,7 @@ class ForceOnJoint(InRuns):
     """The force, positive in the direction of s."""
 
 
-class TorqueOnJoint(InRuns):
+class TorqueOnJoint(NamedLoad):
     """A torque on the coordinate theta of a joint: on the second link, against the first."""
 
     advice: ClassVar[dict[str, str]] = {"torque": "write value: 5 N*m"}
@@ -335,7 +342,7 @@ class BushingBetweenLinks(PointJoint, InRuns):
     """The deflection without force; left out, it has no force as drawn."""
 
 
-EXAMPLES_OF_BUSHINGS: Final[dict[tuple[str, str], Any]] = {
+EXAMPLES_OF_LOADS: Final[dict[tuple[str, str], Any]] = {
     **{
         (section, key): example
         for section in ("BushingBetweenLinks", "PlaneBushing")
@@ -346,6 +353,12 @@ EXAMPLES_OF_BUSHINGS: Final[dict[tuple[str, str], Any]] = {
             "free": {"x": "2 mm"},
         }.items()
     },
+    **{
+        (section, "name"): "push"
+        for section in ("ForceOnLink", "TorqueOnLink", "ForceOnJoint", "TorqueOnJoint")
+    },
+    ("PlaneForce", "name"): "push",
+    ("PlaneTorque", "name"): "twist",
     ("PlaneBushing", "point"): [0, "10 mm"],
     ("PlaneBushing", "x"): [1, 2],
 }

@@ -58,6 +58,7 @@ from mechkin_cli.schema.loads import (
     FrictionLoad,
     Gravity,
     InRuns,
+    NamedLoad,
     SpringAtJoint,
     SpringBetweenPoints,
     TorqueOnJoint,
@@ -239,7 +240,7 @@ class PlaneGravity(InRuns):
         check_free_fall(self.g, self.direction)
 
 
-class PlaneForce(InRuns):
+class PlaneForce(NamedLoad):
     """A force at a point of a link."""
 
     type: Literal["force"]
@@ -257,7 +258,7 @@ def _one_torque(value: Any) -> Any:
     return _about_normal(value) if isinstance(value, (list, tuple)) else value
 
 
-class PlaneTorque(InRuns):
+class PlaneTorque(NamedLoad):
     """A torque on a link, counter-clockwise."""
 
     advice: ClassVar[dict[str, str]] = {"axes": _NORMAL}
@@ -510,10 +511,12 @@ def _load(load: object) -> AnyLoad:
     if isinstance(load, PlaneForce):
         force = (*load.force, "0")
         of_force = {"link": load.link, "point": _flat(load.point), "force": force}
-        return section_of(ForceOnLink, type=load.type, axes=load.axes, runs=load.runs, **of_force)
+        common = {key: getattr(load, key) for key in ("type", "name", "runs")}
+        return section_of(ForceOnLink, axes=load.axes, **common, **of_force)
     if isinstance(load, PlaneTorque):
         of_torque = {"link": load.link, "torque": ("0", "0", load.torque)}
-        return section_of(TorqueOnLink, type=load.type, runs=load.runs, **of_torque)
+        common = {key: getattr(load, key) for key in ("type", "name", "runs")}
+        return section_of(TorqueOnLink, **common, **of_torque)
     if isinstance(load, PlaneBushing):
         return _bushing(load)
     if isinstance(load, PlaneFriction):

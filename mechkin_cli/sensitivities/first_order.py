@@ -415,16 +415,6 @@ def sensitivities(
     chosen = chosen_parameters(model, parameters)
     which = run_name(model.runs, run)
     problem = model.problem
-    rests = (
-        problem.motion.rest is not None
-        if which == SWEEP
-        else which in problem.responses and (problem.responses[which].search is not None)
-    )
-    if rests:
-        raise UsageError(
-            f"{which} has places at which loads balance, and how they move with parameters is not "
-            "told; run it with two values of one: with_parameters({...})"
-        )
     known = problem.quantities()
     read: list[str] = []
     for text in names:
@@ -432,6 +422,8 @@ def sensitivities(
             read += read_by([_parsed(model, problem, which, text)], known)
     if which == SWEEP:
         analysis = model.analyze(read, tables=[], threads=threads)
+    elif problem.responses[which].search is not None:
+        analysis = model.run_free(which, tables=[])
     else:
         analysis = model.respond(which, tables=[], threads=threads)
     return Sensitivities(analysis, names, chosen, at)

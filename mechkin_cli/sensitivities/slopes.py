@@ -222,7 +222,7 @@ class Shifting:
 
     def _precise(self, name: str, amount: Fraction) -> ShiftingPrecise | None:
         """What replays the shift; None where the model has to be made again."""
-        if not self.is_sweep:
+        if not self.is_sweep or self.result.problem.motion.rest is not None:
             return None
         try:
             precise = self.model.design.shifting

@@ -38,11 +38,12 @@ from mechkin_cli.units import ANGLE, TIME
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel import _kernel
-    from mechkin_cli.mechanism import Assembly, Attached, Problem, Wanted
+    from mechkin_cli.mechanism import Assembly, Attached, DrivenInput, Problem, Wanted
     from mechkin_cli.session.inputs import KernelInputs
     from mechkin_cli.show import Floats
     from mechkin_cli.structure import SolverGraph
     from mechkin_cli.tape import ExactRecorder, ExactTape, ShiftingRecorder
+    from mechkin_cli.units import UnitSystem
 
 
 # The inputs of a session over its rows as the text says them, in double-double and enclosed.
@@ -173,7 +174,14 @@ def _motion_of(precise: Precise, problem: Problem) -> ExactMotion:
     """The file's motion, or another one as the doubles of its rows in the file's units."""
     motion, units = problem.motion, problem.units
     if motion is precise.base.motion:
-        return precise.motion
+        exact = precise.motion
+        # coordinates at rest under the loads stand in no text
+        unsaid = [item for item in motion.inputs if item.name not in exact.in_si]
+        if not unsaid:
+            return exact
+        given = {item.name: list(map(exact.rows.given, item.written_orders)) for item in unsaid}
+        si = {item.name: _in_si(units, item, given[item.name]) for item in unsaid}
+        return exact._replace(in_si={**exact.in_si, **si}, written={**exact.written, **given})
     rows = ExactRows(precise.recorder, motion.rows)
     written: dict[str, Any] = {}
     in_si: dict[str, Any] = {}
@@ -182,12 +190,17 @@ def _motion_of(precise: Precise, problem: Problem) -> ExactMotion:
         in_si["time"] = units.to_si(written["time"], TIME)
     for item in motion.inputs:
         written[item.name] = [rows.given(order) for order in item.written_orders]
-        in_si[item.name] = [
-            units.to_si(number, dimension_of(item.coordinate) / TIME**order)
-            for order, number in enumerate(written[item.name])
-        ]
+        in_si[item.name] = _in_si(units, item, written[item.name])
     rates = () if motion.constraint_rates is None else motion.constraint_rates
     return ExactMotion(rows, in_si, written, tuple(rows.given(rate) for rate in rates))
+
+
+def _in_si(units: UnitSystem, item: DrivenInput, written: list[Any]) -> list[Any]:
+    """The orders of an input in SI."""
+    return [
+        units.to_si(number, dimension_of(item.coordinate) / TIME**order)
+        for order, number in enumerate(written)
+    ]
 
 
 class Precise:

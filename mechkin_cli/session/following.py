@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
+_ENDS = tuple(TrackEnd)  # by their numbers: calling an enumeration takes longer than a step
+
 # The kernel's limits of a step along a path, by name.
 
 
@@ -55,6 +57,7 @@ def step_numbers(
         "radius": tolerances.SPECTRAL_RADIUS,
         "narrow": tolerances.NARROW_STEP,
         "arc_steps": tolerances.ARC_STEPS,
+        "arc_work": tolerances.ARC_WORK,
         "straight": straight,
         "iterations": tolerances.NEWTON_ITERATIONS,
         "same_line": tolerances.SAME_LINE,
@@ -174,7 +177,7 @@ def follow(
         guess,
         limit,
         reached,
-        TrackEnd(end),
+        _ENDS[end],
         steps,
         place,
         state,

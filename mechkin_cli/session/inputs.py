@@ -58,19 +58,27 @@ def without_turns(values: Floats, turn: Fraction) -> tuple[Floats, Floats]:
         turn: a full turn in their unit.
     """
     size = float(turn)
-    most = float(np.max(np.abs(values), initial=0.0))
-    if not 0.5 * size < most <= tolerances.LARGEST_TURNS * size:
+    cells, _, largest, smallest = _kernel.extremes(np.ascontiguousarray(values))
+    most = max(largest, -smallest)
+    if cells < values.size or not 0.5 * size < most <= tolerances.LARGEST_TURNS * size:
         return values, np.zeros_like(values)
-    if Fraction(size) == turn:
-        rest = np.fmod(values, size)  # exact by IEEE 754
+    whole = np.rint(values / size)
+    if Fraction(size) != turn:
+        rest = _subtract(values, whole, turn)
+    elif size.is_integer() and most * size < float(1 << _PART_BITS):
+        # the product is exact, and so is the difference: no longer than the values
+        rest = values - whole * size
+        np.copysign(rest, values, out=rest, where=rest == 0.0)  # as the remainder below
     else:
-        rest = _subtract(values, np.rint(values / size), turn)
+        rest = np.fmod(values, size)  # exact by IEEE 754
+        whole = np.rint((values - rest) / size)
     for way in (1.0, -1.0):
         beyond = rest > 0.5 * size if way > 0.0 else rest <= -0.5 * size
         if beyond.any():
             here = rest[beyond]
             rest[beyond] = _subtract(here, np.full_like(here, way), turn)
-    return rest, np.rint((values - rest) / size)
+            whole[beyond] += way
+    return rest, whole + 0.0  # no zero has a sign
 
 
 def _subtract(values: Floats, whole: Floats, turn: Fraction) -> Floats:
@@ -178,7 +186,10 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
     held = held_values(problem, layout)
 
     def table(name: str, at: list[float]) -> Floats:
-        moving = [getattr(i, name) / unit for i, unit in zip(inputs, units, strict=True)]
+        moving = [
+            getattr(i, name) if unit == 1.0 else getattr(i, name) / unit
+            for i, unit in zip(inputs, units, strict=True)
+        ]
         still = [np.full(rows, value) for value in at]
         return np.array([*moving, *still]) if moving or still else np.empty((0, rows))
 

@@ -59,8 +59,7 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-@dataclass(frozen=True)
-class Packing:
+class Packing(NamedTuple):
     """How the kernel packs rows: `lanes` at a time (0: the most that the machine has) on `threads`
     (0: all cores, for work worth it). No result depends on either."""
 
@@ -236,7 +235,7 @@ class Session:
         time = None if moments is None else moments.values
         return (inputs or self.inputs).at(states, turned, time, self.constraint_rates)
 
-    @property
+    @cached_property
     def is_redundant(self) -> bool:
         """Whether some loop has more closing equations than unknowns."""
         return is_redundant(self.graph)

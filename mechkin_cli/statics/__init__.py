@@ -20,8 +20,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "forces": "Derivative DrivenAt Forces ForcesAt FreePlace combined differentiated summed",
-        "places": "Statics",
-        "rest": "rested",
+        "places": "Place Statics",
+        "rest": "UnsolvedText rested",
         "result": "EquilibriumResult",
         "runs": "balance balanced",
     },

@@ -340,8 +340,9 @@ class Forces:
         count, session = u.shape[1], self.session
 
         def of_rows(array: Floats) -> Floats:
-            column = array[:, None] if array.ndim == 1 else array
-            return np.repeat(column, count, axis=1) if column.shape[1] == 1 else column
+            if array.ndim == 1:
+                return np.repeat(array, count).reshape(len(array), count)
+            return array
 
         state = of_rows(place.state)
         guess = session.moved_along(state, combined(place.tangents, u)) if u.any() else state

@@ -400,6 +400,18 @@ class FrictionRest:
         return [Diagnostic("rest-interval", "note", text, response.place)]
 
 
+def friction_left_out(response: ResponseProblem) -> list[Diagnostic]:
+    """That no interval of rest is told where several freedoms are free and joints rub."""
+    if not response.frictions or response.rubs_at_rest:
+        return []
+    text = "friction is left out: the loads balance without it"
+    hint = (
+        "of several freedoms it holds the mechanism in a region about this place; a response that "
+        "starts at rest tells whether it stays"
+    )
+    return [Diagnostic("friction-left-out", "note", text, response.place, hint=hint)]
+
+
 def _rests(shares: Floats) -> Bools:
     with np.errstate(invalid="ignore"):
         rests: Bools = np.abs(shares) <= 1.0

@@ -74,11 +74,26 @@ def _moved(session: Session, rest: Rest, values: Floats) -> Session:
     leader = motion.leading_number
     motion = motion._replace(inputs=tuple(inputs), rest=rest, leader=leader)
     problem = replace(session.problem, motion=motion).with_quantities_of(session.problem)
-    return session.moved(problem).reading(_no_text)
+    return session.moved(problem).reading(UnsolvedText(session))
 
 
-def _no_text() -> Precise:
-    raise TraceLost("a coordinate that rests where the loads balance")
+class UnsolvedText:
+    """In place of the text of a sweep whose coordinates at rest were found.
+
+    Args:
+        session: before that; its text does not say them.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+
+    def __call__(self) -> Precise:
+        """Tells that there is none.
+
+        Raises:
+            TraceLost: always.
+        """
+        raise TraceLost("a coordinate that rests where the loads balance")
 
 
 class _Branch:

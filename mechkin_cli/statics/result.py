@@ -19,6 +19,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.plan import FORCE_KINDS, Demand
 from mechkin_cli.response import FreeResult
 from mechkin_cli.session import Chart, input_unit, turn_count
+from mechkin_cli.statics.friction import friction_left_out
 from mechkin_cli.statics.newton import Balancing, Search
 from mechkin_cli.statics.stability import Stability, Verdict
 from mechkin_cli.sweep import SweepRows
@@ -60,7 +61,7 @@ class EquilibriumResult(FreeResult):
         session = free.moved(free.problem.moved(_rows(response, count)))
         rows = SweepRows.without_guesses(free.layout.states, turn_count(free.plan), count)
         rows.turns[:] = 0.0
-        rows.diagnostics += notes
+        rows.diagnostics += [*notes, *friction_left_out(response)]
         freedoms, columns = balancing.forces.freedoms, free.plan.columns
         directions = np.zeros((freedoms * columns, count))
         for number, (one, _) in enumerate(found):
@@ -81,6 +82,7 @@ class EquilibriumResult(FreeResult):
             chart=Chart(directions, still, still, np.zeros((0, count))),
             response=response,
         )
+        self.balancing = balancing
         self.found, self.rests = tuple(found), tuple(rests)
         self.held = np.zeros(count, dtype=bool)
         for number, (_, verdict) in enumerate(found):
@@ -132,6 +134,10 @@ class EquilibriumResult(FreeResult):
 
     def _told(self, values: Sequence[float]) -> Floats:
         return np.array(values) if values else np.full(1, np.nan)
+
+    def stiffness(self, row: int) -> Floats:
+        """How the forces change along the chart of a row (freedoms, freedoms), kernel units."""
+        return self.balancing.forces.stiffness(self.found[row][0].place).matrix
 
     @property
     def least_stiffness(self) -> Floats:

@@ -18,7 +18,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.forces import ForcesAt, FreePlace, summed
+from mechkin_cli.statics.forces import Forces, ForcesAt, FreePlace, summed
 from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search
 from mechkin_cli.statics.places import eigen
 
@@ -33,6 +33,7 @@ class Stability(Enum):
     UNSTABLE = "unstable"
     MARGINAL = "marginal"
     INDIFFERENT = "indifferent"
+    FLUTTERS = "unstable by flutter"
     HELD = "held by friction"
     UNKNOWN = "not known"
 
@@ -86,6 +87,8 @@ def judged(balancing: Balancing, found: Search) -> Verdict:
         stability = Stability.UNSTABLE
     elif _is_indifferent(balancing, place, direction):
         stability = Stability.INDIFFERENT
+    if unsymmetric and stability is Stability.STABLE and _flutters(forces, place, matrix):
+        stability = Stability.FLUTTERS
     frequency = nothing
     if stability is Stability.STABLE and not unsymmetric:
         frequency = _lowest_frequency(symmetric, inertia)
@@ -160,6 +163,32 @@ def _is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -
         if np.max(np.abs(moved - wanted)) > 0.5 * np.max(np.abs(wanted)):
             return False
     return True
+
+
+def _flutters(forces: Forces, place: FreePlace, matrix: Floats) -> bool:
+    """Whether a small motion grows that does not creep: an eigenvalue of M s^2 + D s + K has a real
+    part above zero. Motions without mass do not flutter; where some have none, nothing is told."""
+    count = forces.freedoms
+    masses, damping = forces.inertia(place), forces.damping(place).matrix
+    if not float(np.min(eigen(masses)[0])) > tolerances.MASSLESS * float(np.max(np.abs(masses))):
+        return False
+    system = np.zeros((2 * count, 2 * count))
+    system[:count, count:] = np.eye(count)
+    for column in range(count):
+        for block, part in ((0, matrix), (count, damping)):
+            right = (-part[:, column]).tolist()
+            solved = eliminated(masses.tolist(), right, tolerances.MASSLESS)
+            if solved is None or not np.isfinite(solved).all():
+                return False
+            system[count:, block + column] = solved
+    # rates in parts of what the stiffness makes of them
+    pace = sqrt(float(np.max(np.abs(system[count:, :count]))))
+    if not pace > 0.0:
+        return False
+    system[count:, :count] /= pace
+    system[:count, count:] *= pace
+    values = _kernel.eigen(np.ascontiguousarray(system))
+    return values is not None and float(np.max(values[0])) > tolerances.FLUTTER * pace
 
 
 def _lowest_frequency(matrix: Floats, masses: Floats) -> float:

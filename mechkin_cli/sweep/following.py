@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Problem, Wanted
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import TrackEnd, needs_all_links
@@ -238,13 +239,25 @@ def _turning(session: Session, first: int, last: int) -> NDArray[np.intp]:
     """Of the rows from one to another the numbers of those at which the inputs turn back, counted
     from the first."""
     step = 1 if last >= first else -1
-    values = session.inputs.values[:, np.arange(first, last + step, step)]
+    values = session.inputs.values[:, first : last + 1] if step > 0 else _back(session, first, last)
+    if all(_goes_one_way(value) for value in values):
+        return np.empty(0, np.intp)
     moved = np.flatnonzero((values[:, 1:] != values[:, :-1]).any(axis=0))
     along = np.zeros(max(moved.size - 1, 0))
     for value in values:
         way = value[moved + 1] - value[moved]
         along = along + way[1:] * way[:-1]
     return moved[1:][along < 0.0]
+
+
+def _back(session: Session, first: int, last: int) -> Floats:
+    return session.inputs.values[:, np.arange(first, last - 1, -1)]
+
+
+def _goes_one_way(values: Floats) -> bool:
+    """Whether no value is on the other side of the one before it than some other is."""
+    _, _, most, least = _kernel.extremes(values[1:] - values[:-1])
+    return most <= 0.0 or least >= 0.0
 
 
 def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Floats | None:

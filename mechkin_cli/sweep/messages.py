@@ -91,7 +91,10 @@ def open_turn_note(session: Session, rows: SweepRows, first: FirstRow | None) ->
         return None
     turns = session.inputs.whole[first.number] - first.whole
     rest = (session.inputs.reduced[first.number] - first.reduced) / (2.0 * np.pi)
-    whole = rows.reached & (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
+    near = np.abs(rest) <= tolerances.SAME_TURN
+    if not np.count_nonzero(near):
+        return None
+    whole = rows.reached & (turns != 0.0) & near
     if not whole.any():
         return None
     row = int(np.argmax(whole))

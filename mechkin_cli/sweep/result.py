@@ -412,7 +412,8 @@ class Result:
         self._keep_read(batch, ask)
 
     def _keep_read(self, batch: Batch, ask: Ask) -> None:
-        self.demand |= ask.demand
+        if self.demand != ask.demand:  # flags are slow, and short runs are many
+            self.demand = self.demand | ask.demand if self.demand else ask.demand
         self._store_verdicts(batch)
         if ask.readout is None:
             return

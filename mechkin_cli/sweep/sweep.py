@@ -162,7 +162,7 @@ class Sweep:
         if rest is not None and not rest.solved:
             raise UsageError(
                 "this sweep has coordinates at rest (motion: rest:), and where they are is found "
-                "by analyze() alone: vary, study, fit and sensitivities take other runs"
+                "by analyze()"
             )
         self.asked = _wanted(session, tuple(dict.fromkeys(quantities)))
         self.unasked = unasked

@@ -301,7 +301,8 @@ class TableColumn:
         self, values: FloatArray | Words, unbounded: FloatArray | None = None
     ) -> TableColumn:
         """The column with other rows."""
-        return replace(self, values=values, unbounded=unbounded)
+        # as long runs cut their columns, these are many
+        return TableColumn(self.label, self.unit, values, self.decimals, unbounded, self.rounding)
 
     def between(self, rows: slice) -> TableColumn:
         """Some neighbouring rows, without copying them."""
@@ -467,7 +468,9 @@ def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:
             0,
             f"write {value.components_of(layout.expression.text)}",
         )
-    in_si = np.asarray(np.broadcast_to(value, (source.rows,)), dtype=np.float64)
+    in_si = np.asarray(value, dtype=np.float64)
+    if not in_si.ndim:
+        in_si = np.full(source.rows, in_si)
     values = source.units.from_si(in_si, quantity.dimension)
     if values is in_si:  # the unit is that of SI, and the array may be the source's
         values = in_si.copy()

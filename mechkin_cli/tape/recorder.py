@@ -17,6 +17,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import NamedTuple, fields, is_dataclass, replace
 from mechkin_cli.show import Floats
 from mechkin_cli.tape.scalars import Recorded, Undecided, as_recorded
@@ -363,7 +364,10 @@ def within(values: Floats, limit: float) -> bool:
     """Whether no number is larger than a limit, or nan."""
     if is_traced(values):
         return all(bool(abs(value) <= limit) for value in values.flat)
-    return bool(np.abs(values).max() <= limit)
+    if values.dtype != np.float64:
+        return bool(np.abs(values).max() <= limit)
+    cells, _, largest, smallest = _kernel.extremes(np.ascontiguousarray(values).reshape(-1))
+    return cells == values.size and -limit <= smallest and largest <= limit
 
 
 def differ(values: Floats) -> bool:

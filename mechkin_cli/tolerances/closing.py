@@ -321,6 +321,11 @@ by arclength: sweeps far from dead centres and branch points take steps of a ten
 ARC_STEPS: Final = 4000
 """Steps of one look by arclength. A gap of 1e-12 between two branches takes some two hundred."""
 
+ARC_WORK: Final = 1e9
+"""Attempts of steps of one look by arclength times the cube of the equations that are walked
+together, each some sixty products of matrices: half a minute. Up to 60 equations all steps that a
+look may have; a branch point takes some 50, of 240 equations yet."""
+
 PLAN_STEP: Final = 1e-3
 """Part of a path of changing dimensions over which its derivatives are read, unless its steps are
 short: differences are wrong by its square, 1e-6, and rounding leaves 1e-10 in the second ones; both

@@ -59,6 +59,13 @@ UNSYMMETRIC_STIFFNESS: Final = 1e-8
 """A stiffness that is unsymmetric by more than this part of its largest entry is of loads without a
 potential: rounding and differences leave less."""
 
+MASSLESS: Final = 1e-12
+"""An eigenvalue of the inertia below this part of its largest entry is of a motion without mass."""
+
+FLUTTER: Final = 1e-6
+"""Real parts of eigenvalues above this part of the fastest are of motions that grow: two that meet,
+as at the load of flutter, are off by the root of the rounding of forces and of their slopes."""
+
 INDIFFERENT_REACH: Final = 0.1
 """How far along a motion without stiffness the loads are looked at, rad or length units: where they
 still balance there, the equilibrium is indifferent."""
@@ -250,3 +257,15 @@ turns."""
 
 MOST_REST_INTERVALS: Final = 4
 """Intervals of rest whose ends are told one by one."""
+
+# Balance in double-double.
+
+BALANCE_CORRECTIONS: Final = 10
+"""Corrections of a place: each leaves 1e-8 of the one before, or what the place leaves squared."""
+
+REPEATED_BALANCE: Final = 1e-30
+"""Corrections below this, rad or length units, are rounding of double-doubles."""
+
+BALANCED_PLACE: Final = 1e-24
+"""Corrections that stay above this, rad or length units, are of a place that a stiffness near zero
+hardly tells: true errors of doubles would not be seen beside them."""

@@ -11,15 +11,16 @@ from __future__ import annotations
 
 import operator
 from fractions import Fraction
+from functools import lru_cache
 
-from mechkin_cli.record import dataclass
+from mechkin_cli.record import NamedTuple
 
 Exponent = int | Fraction
 
 
-@dataclass(frozen=True, slots=True)
-class Dimension:
-    """Exponents of the base dimensions; fractions only come from square roots."""
+class Dimension(NamedTuple):
+    """Exponents of the base dimensions; fractions only come from square roots. A tuple, as such are
+    keys of whatever is remembered, and hashed more often than anything else."""
 
     length: Exponent = 0
     mass: Exponent = 0
@@ -36,11 +37,11 @@ class Dimension:
         """Whether all exponents are zero; an angle is not dimensionless."""
         return not (self.length or self.mass or self.time or self.angle)
 
-    def __mul__(self, other: Dimension) -> Dimension:
-        return Dimension(*map(plain, map(operator.add, self.exponents, other.exponents)))
+    def __mul__(self, other: Dimension) -> Dimension:  # type: ignore[override]
+        return _product(self, other)
 
     def __truediv__(self, other: Dimension) -> Dimension:
-        return Dimension(*map(plain, map(operator.sub, self.exponents, other.exponents)))
+        return _quotient(self, other)
 
     def __pow__(self, exponent: Exponent) -> Dimension:
         return Dimension(*(plain(power * exponent) for power in self.exponents))
@@ -65,6 +66,19 @@ class Dimension:
         """The dimension as a product: `length^2/time`."""
         names = ("mass", "length", "angle", "time")
         return format_product([(name, getattr(self, name)) for name in names])
+
+
+# Of the few dimensions that there are each mechanism asks for the same products hundreds of times.
+
+
+@lru_cache(maxsize=4096)
+def _product(one: Dimension, other: Dimension) -> Dimension:
+    return Dimension(*map(plain, map(operator.add, one.exponents, other.exponents)))
+
+
+@lru_cache(maxsize=4096)
+def _quotient(one: Dimension, other: Dimension) -> Dimension:
+    return Dimension(*map(plain, map(operator.sub, one.exponents, other.exponents)))
 
 
 def format_product(factors: list[tuple[str, Exponent]]) -> str:

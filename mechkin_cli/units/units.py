@@ -15,6 +15,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -443,9 +444,7 @@ class UnitSystem:
         Raises:
             UnitError: an entry that does not exist or is not a unit of its kind; `key` names it.
         """
-        return cls(
-            **{key: field_unit(key, text) for key, text in texts.items() if text is not None}
-        )
+        return _system(tuple((key, text) for key, text in texts.items() if text is not None))
 
     def unit(self, dimension: Dimension) -> CompoundUnit:
         """The unit of a dimension, composed by the rules above."""
@@ -500,9 +499,16 @@ class UnitSystem:
         Raises:
             UnitError: the factor is outside the range of numbers (exponents far from any use).
         """
-        if dimension not in self._conversions:
-            self._conversions[dimension] = conversion(self.unit(dimension).factor)
-        return self._conversions[dimension]
+        known = self._conversions.get(dimension)
+        if known is None:
+            known = self._conversions[dimension] = conversion(self.unit(dimension).factor)
+        return known
+
+
+@lru_cache(maxsize=64)
+def _system(texts: tuple[tuple[str, str], ...]) -> UnitSystem:
+    """The system of some entries: variants of a file have the same, with all that it remembers."""
+    return UnitSystem(**{key: field_unit(key, text) for key, text in texts})
 
 
 def field_unit(key: str, text: str) -> CompoundUnit:

@@ -15,6 +15,7 @@ import numpy as np
 
 from mechkin_cli.analysis import Analysis, Solvable, a_packing, run_name
 from mechkin_cli.arguments import a_text
+from mechkin_cli.building import without_collection
 from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
 from mechkin_cli.kernel._kernel import VariantEnd
@@ -432,20 +433,22 @@ class _ResponseRun:
         self.codes = np.full((count, self.rows), int(Status.not_assembled), dtype=np.int8)
         found: dict[str, Floats] = {}
         for begin in range(0, count, CHUNK):
-            models: dict[int, tuple[Solvable, Prepared]] = {}
-            for number in range(begin, min(begin + CHUNK, count)):
-                self._prepare(number, values[:, number], models)
-            prepared = [one for _, one in models.values()]
-            results: Sequence[FreeResult] = [
-                balanced(one) for one in prepared if one.response.search
-            ]
-            if not results:
-                results = integrated(prepared, self.packing)
-            for number, result in zip(models, results, strict=True):
-                self._take(number, models[number][0], result, found, count)
+            with without_collection():  # what is made of variants lives as long as their chunk
+                self._run_chunk(range(begin, min(begin + CHUNK, count)), values, found)
         for text in self.asked:
             found.setdefault(text, np.full((count, self.rows), np.nan))
         return found
+
+    def _run_chunk(self, numbers: range, values: Floats, found: dict[str, Floats]) -> None:
+        models: dict[int, tuple[Solvable, Prepared]] = {}
+        for number in numbers:
+            self._prepare(number, values[:, number], models)
+        prepared = [one for _, one in models.values()]
+        results: Sequence[FreeResult] = [balanced(one) for one in prepared if one.response.search]
+        if not results:
+            results = integrated(prepared, self.packing)
+        for number, result in zip(models, results, strict=True):
+            self._take(number, models[number][0], result, found, values.shape[1])
 
     def _prepare(
         self, number: int, row: Floats, models: dict[int, tuple[Solvable, Prepared]]

@@ -19,7 +19,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "place": "Freed freed",
-        "playing": "PlayedMode played",
+        "playing": "PlayedMode played swung",
         "tables": "vibration_tables",
         "vibration": "FrequencyResponse StateSpace Vibration",
     },

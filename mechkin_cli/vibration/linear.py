@@ -144,6 +144,14 @@ class SmallMotions:
         other.forces, other.session, other.place = forces, forces.session, place
         return other
 
+    def acting(self, forces: Forces) -> Floats:
+        """What acts along the coordinates (freedoms,) at the place by what other forces have
+        more."""
+        still = self.still()
+        without, _, _ = self._left(still, held=False)
+        more, _, _ = self.with_forces(forces)._left(still, held=False)
+        return times(turned(self.inverse), without - more)[:, 0]
+
     def still(self, count: int = 1) -> Motions:
         """The place itself, at rest, so many times."""
         zeros = np.zeros((self.forces.freedoms, count))

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import DrivenInput, Problem
     from mechkin_cli.session import KernelInputs, RowInputs, Session
     from mechkin_cli.show import Floats
+    from mechkin_cli.statics import ForcesAt
     from mechkin_cli.vibration.place import Freed
 
 MOMENTS = 49
@@ -31,6 +32,9 @@ MOMENTS = 49
 
 SWING = 0.25
 """Largest displacement of a joint coordinate that is shown, rad or the mechanism's length unit."""
+
+SHOWN_STEP = 1e-3
+"""Displacement whose direction an arrow shows: so short that nothing bends."""
 
 LEAST_SWING = SWING / 64.0
 """Where the loops do not close that far, half as far is tried, down to this."""
@@ -95,34 +99,55 @@ def played(
         swing *= 0.5
         if swing < LEAST_SWING:
             raise UsageError("this mode cannot be shown: the loops do not close beside its place")
-    session = small.forces.session
-    problem = _over_moments(session.problem, row, angles, frequency or 1.0)
-    rows = SweepRows.without_guesses(session.layout.states, 0, MOMENTS)
+    return _shown(freed, run, row, found, angles / (2.0 * pi * (frequency or 1.0)))
+
+
+def swung(freed: Freed, run: Result, row: int, shape: Floats) -> PlayedMode:
+    """Two rows: a row of a run, and a place a little beside it along a mode.
+
+    Args:
+        freed: the row that is left to move.
+        run: the rows that it is one of.
+        row: its number.
+        shape: the named coordinates (freedoms,), SI.
+    """
+    small = freed.motions
+    way = times(small.inverse, shape[:, None])
+    largest = float(np.abs(combined(small.place.tangents, way)).max())
+    found = small.forces.at(small.place, way * np.array([0.0, SHOWN_STEP / largest]))
+    return _shown(freed, run, row, found, np.array([0.0, 1.0]))
+
+
+def _shown(freed: Freed, run: Result, row: int, found: ForcesAt, seconds: Floats) -> PlayedMode:
+    """Places beside a row as rows at some moments."""
+    small, count = freed.motions, seconds.size
+    session = small.session
+    problem = _over_moments(session.problem, row, seconds)
+    rows = SweepRows.without_guesses(session.layout.states, 0, count)
     rows.states, rows.turns = found.states, found.turns
     rows.reached[:] = True
-    still = np.zeros((small.forces.freedoms, MOMENTS))
-    direction = np.repeat(small.place.tangents.ravel()[:, None], MOMENTS, axis=1)
-    chart = Chart(direction, still, still, np.zeros((0, MOMENTS)))
+    still = np.zeros((small.forces.freedoms, count))
+    direction = np.repeat(small.place.tangents.ravel()[:, None], count, axis=1)
+    chart = Chart(direction, still, still, np.zeros((0, count)))
     shown = PlayedMode(session.moved(problem), run.start, rows, chart)
     ask = Ask(Demand.CONDITION)
     shown.keep(shown.run(ask), ask)
     return shown
 
 
-def _over_moments(problem: Problem, row: int, angles: Floats, frequency: float) -> Problem:
-    """The problem over the moments of a period, where what is driven stays as in a row."""
-    seconds = angles / (2.0 * pi * frequency)
+def _over_moments(problem: Problem, row: int, seconds: Floats) -> Problem:
+    """The problem over some moments, where what is driven stays as in a row."""
     written = np.asarray(problem.units.from_si(seconds.copy(), TIME), dtype=np.float64)
-    inputs = tuple(_held(item, row) for item in problem.motion.inputs)
-    return problem.moved(MotionInputs(inputs, MOMENTS, Moments(seconds, written)))
+    inputs = tuple(_held(item, row, seconds.size) for item in problem.motion.inputs)
+    return problem.moved(MotionInputs(inputs, seconds.size, Moments(seconds, written)))
 
 
-def _held(item: DrivenInput, row: int) -> DrivenInput:
-    still = np.zeros(MOMENTS)
-    written = np.zeros((4, MOMENTS))
+def _held(item: DrivenInput, row: int, count: int) -> DrivenInput:
+    still = np.zeros(count)
+    written = np.zeros((4, count))
     written[0] = item.written_orders[0, row]
     return item._replace(
-        values=np.full(MOMENTS, item.values[row]),
+        values=np.full(count, item.values[row]),
         rates=still,
         accelerations=still,
         jerks=still,

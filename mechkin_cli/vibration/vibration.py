@@ -103,6 +103,10 @@ class Source(Protocol):
         """Those with another value of a parameter, a factor of its own."""
         ...
 
+    def pictured(self, found: Vibration) -> str:
+        """A picture of the modes."""
+        ...
+
     def shown(self, found: Vibration, path: str | PathLike[str] | None) -> Any:
         """A page in which the modes are played."""
         ...
@@ -354,6 +358,9 @@ class Vibration(Listed):
         """The unit load along a coordinate or a component of a point's place; None for what no load
         does alone."""
         mechanism = self._freed.session.problem.mechanism
+        named = self._named(name)
+        if named is not None:
+            return named
         first, _, last = name.rpartition(".")
         if first in mechanism.joints and last in mechanism.joints[first].type.coordinates:
             joint = mechanism.joints[first]
@@ -363,8 +370,26 @@ class Vibration(Listed):
             at = mechanism.points[point]
             x, y, z = (1.0 if axis == last else 0.0 for axis in "xyz")
             return LinkLoad("force", at.link, (x, y, z), "ground", at.vector)
-        hint = "name a coordinate, a component such as P.position.z, or a driven coordinate"
+        hint = (
+            "name a coordinate, a component such as P.position.z, a driven coordinate, or a force "
+            "or torque of loads: by its name"
+        )
         raise UsageError(f"no input {name[:LONGEST_NAME]}; {hint}")
+
+    def _named(self, name: str) -> Load | None:
+        """The load of that name, of one along its direction; None where there is none.
+
+        Raises:
+            UsageError: it has no direction.
+        """
+        loads = self._freed.session.problem.mechanism.loads
+        found = next((load for load in loads if name and load.called == name), None)
+        if found is not None and found.of_one is None:
+            raise UsageError(
+                f"the load {name} has no direction of its own: name a coordinate, or a component "
+                "such as P.position.z"
+            )
+        return None if found is None else found.of_one
 
     def _loaded(self, load: Load) -> Forces:
         """The forces with one load more."""
@@ -376,7 +401,9 @@ class Vibration(Listed):
     def _force(self, name: str) -> Floats:
         """What acts along the coordinates (coordinates,) by a unit force along a quantity, which
         does work on that alone."""
-        self._load(name)
+        load = self._load(name)
+        if load is not None and load.called:
+            return self._small.acting(self._loaded(load))
         gradient: Floats = self._small.gradient(self._reader([name]))[0]
         return gradient
 
@@ -415,6 +442,14 @@ class Vibration(Listed):
         """
         assert self._source is not None
         return self._source.shown(self, path)
+
+    def picture(self) -> str:
+        """The modes on one picture, as the text of an SVG file: a panel for each, where the
+        mechanism stands as in the row, with arrows along which its points, joints and mass centres
+        move. Of a mode with imaginary parts it is the moment at which what moves most is
+        outermost; of very many modes the lowest are shown."""
+        assert self._source is not None
+        return self._source.pictured(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled as what it is made from."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from mechkin_cli.view.following import *
     from mechkin_cli.view.gallery import *
     from mechkin_cli.view.joints import *
+    from mechkin_cli.view.mode_shapes import *
     from mechkin_cli.view.notebook import *
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
@@ -28,6 +29,7 @@ __getattr__, __dir__ = lazy_names(
         "gallery": "INDEX_NAME Card card_of index_page",
         "joints": "carried continuous drawn_joints half_axis half_frame link_poses link_shape "
         "plane_of_motion upwards",
+        "mode_shapes": "ShownMode mode_picture",
         "notebook": "Page widget_of",
         "page": "PAGE_NAME Lengths packed",
         "scene": "view_page write_view",

@@ -180,16 +180,25 @@ Item = tuple[float, list[Mark]]
 def mechanism_picture(result: Result, settings: ViewSettings | None = None) -> str:
     """The picture of a run as one SVG file with a newline at its end; `settings`: the shapes of its
     links, and which are hidden."""
-    marks = _Scene(result, settings or ViewSettings()).marks()
+    marks = SmallPicture(result, settings or ViewSettings()).marks()
     size = f'width="{WIDTH:.0f}" height="{HEIGHT:.0f}" viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>'
     return "\n".join([head, f"<style>{STYLE}</style>", *(m.svg for m in marks), "</svg>", ""])
 
 
-class _Scene:
-    """A run's first position on the picture."""
+class SmallPicture:
+    """A run's first position on the picture.
 
-    def __init__(self, result: Result, settings: ViewSettings) -> None:
+    Args:
+        result: the run.
+        settings: the shapes of its links, and which are hidden.
+        marked: points that have to have their place on the picture, too.
+    """
+
+    def __init__(
+        self, result: Result, settings: ViewSettings, marked: Sequence[Attached] = ()
+    ) -> None:
+        self._marked = marked
         self.result = result
         self.settings = settings
         self.mechanism = result.problem.mechanism
@@ -219,7 +228,7 @@ class _Scene:
             *(m for _, marks in [*links, *spindles, *joints] for m in marks),
         ]
 
-    def _placed(self, link: str, points: Floats, row: int = 0) -> Floats:
+    def placed(self, link: str, points: Floats, row: int = 0) -> Floats:
         """Points as drawn on a link (points, 3) as they are seen: right, up, near."""
         pose = self.poses[row, self.links.index(link)]
         return np.array([self.view.seen(carried(pose, tuple(point))) for point in points])
@@ -232,20 +241,21 @@ class _Scene:
 
     def _fit(self) -> None:
         """Where the middle of all that is drawn is, and points per length."""
-        parts = [self._placed(link, shape.outline) for link, shape in self._link_shapes()]
+        parts = [self.placed(link, shape.outline) for link, shape in self._link_shapes()]
         for joint in self.joints:
             for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
-                parts.append(self._placed(link, np.array([half_frame(joint, side).o])))
-        parts += [self._path(at.link, at.vector) for at in self._moving_points()]
-        parts += [self._placed(cam.link, cam.line) for cam in self._cams]
-        parts += [self._placed(track.link, track.line) for track in self._tracks]
+                parts.append(self.placed(link, np.array([half_frame(joint, side).o])))
+        parts += [self._path(at.link, at.vector) for at in self.moving_points()]
+        parts += [self.placed(cam.link, cam.line) for cam in self._cams]
+        parts += [self.placed(track.link, track.line) for track in self._tracks]
+        parts += [self.placed(at.link, np.array([at.vector])) for at in self._marked]
         for between in self.settings.between:
             if between.kind == "cylinder":
-                parts += [self._placed(at.link, np.array([at.vector])) for at in between.ends]
+                parts += [self.placed(at.link, np.array([at.vector])) for at in between.ends]
         for places, _, rims in self._ropes:
             parts += [self.view.seen(each) for each in (places, *rims)]
         for wheel in self._drawn_wheels():
-            parts += [self._placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
+            parts += [self.placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
         every = np.concatenate(parts)[:, :2]
         low, high = every.min(axis=0), every.max(axis=0)
@@ -253,13 +263,14 @@ class _Scene:
         self.scale = float(np.min(room / np.maximum(high - low, POINTS_APART * self.size)))
         self.middle = (low + high) / 2.0
 
-    def _on_picture(self, seen: Floats) -> Place:
+    def on_picture(self, seen: Floats) -> Place:
+        """Where what is seen stands."""
         x, y = self.scale * (seen[:2] - self.middle)
         # the feet below the joints need some room, too
         return WIDTH / 2.0 + float(x), HEIGHT / 2.0 - 4.0 - float(y)
 
     def _all_on_picture(self, seen: Sequence[Floats] | Floats) -> tuple[Place, ...]:
-        return tuple(self._on_picture(one) for one in seen)
+        return tuple(self.on_picture(one) for one in seen)
 
     def _link_shapes(self) -> Iterator[tuple[str, Shape]]:
         shapes = self.settings.shapes
@@ -271,7 +282,8 @@ class _Scene:
             if link not in self.settings.hidden
         )
 
-    def _moving_points(self) -> Iterator[Attached]:
+    def moving_points(self) -> Iterator[Attached]:
+        """The named points of links that move."""
         return (at for at in self.mechanism.points.values() if at.link in self.links[1:])
 
     def _ink(self, link: str) -> str:
@@ -281,11 +293,11 @@ class _Scene:
         for link, shape in self._link_shapes():
             if shape.kind == "none":
                 continue
-            seen, ink = self._placed(link, shape.outline), self._ink(link)
-            places = sorted(self._on_picture(one) for one in seen)
+            seen, ink = self.placed(link, shape.outline), self._ink(link)
+            places = sorted(self.on_picture(one) for one in seen)
             near = round(float(seen[:, 2].sum()) / len(seen) / self.size, NEAR_DECIMALS)
             if shape.centre is not None:
-                centre = self._on_picture(self._placed(link, shape.centre[None])[0])
+                centre = self.on_picture(self.placed(link, shape.centre[None])[0])
                 marks: list[Mark] = [
                     Stroke((centre, place), ink, ROD, round_ends=True) for place in places
                 ]
@@ -316,8 +328,8 @@ class _Scene:
 
     def _discs(self) -> Iterator[Item]:
         for cam in self._cams:
-            seen = self._placed(cam.link, cam.line)
-            places = tuple(self._on_picture(one) for one in seen)
+            seen = self.placed(cam.link, cam.line)
+            places = tuple(self.on_picture(one) for one in seen)
             near = round(float(seen[:, 2].mean()) / self.size, NEAR_DECIMALS)
             yield near, [Stroke(places, self._ink(cam.link), 1.2, closed=True, filled=True)]
 
@@ -331,7 +343,7 @@ class _Scene:
                 marks += self._aslant(wheel)
             else:
                 for outline in wheel_outlines(wheel, toothed):
-                    places = self._all_on_picture(self._placed(wheel.link, outline))
+                    places = self._all_on_picture(self.placed(wheel.link, outline))
                     edge = _hull(sorted(places)) if wheel.is_worm else places
                     marks.append(Stroke(edge, ink, 1.2, closed=True, filled=not wheel.inner))
             if wheel.is_worm:
@@ -339,13 +351,13 @@ class _Scene:
                 marks += self._thread(
                     wheel.link, wheel.on, wheel.radius, lead, wheel.teeth, (-half, half)
                 )
-            height = self._placed(wheel.link, np.array([wheel.on.o]))[0, 2]
+            height = self.placed(wheel.link, np.array([wheel.on.o]))[0, 2]
             yield round(float(height) / self.size, NEAR_DECIMALS), marks
 
     def _aslant(self, wheel: DrawnWheel) -> Iterator[Mark]:
         """The tips of teeth that face the eye, from their far ends on, and before them the face
         that does."""
-        low, high = (self._placed(wheel.link, face) for face in toothed_faces(wheel))
+        low, high = (self.placed(wheel.link, face) for face in toothed_faces(wheel))
         _, axes = self._seen_frame(wheel.link, wheel.on)
         front, back = (high, low) if axes[2, 2] > 0.0 else (low, high)
         ink = self._ink(wheel.link)
@@ -363,7 +375,7 @@ class _Scene:
         """Origin (3,) and axes (3, 3) of a frame as drawn on a link, as they are seen."""
         origin = np.array(frame.o)
         axes = [origin + np.array(axis) for axis in (frame.x, frame.y, frame.z)]
-        seen = self._placed(link, np.array([origin, *axes]))
+        seen = self.placed(link, np.array([origin, *axes]))
         return seen[0], seen[1:] - seen[0]
 
     def _thread(
@@ -406,28 +418,28 @@ class _Scene:
             ways = bearing, float((middle - origin) @ axes[2])
             beyond = 2.0 * RAIL / self.scale
             ends = min(ways) - beyond, max(ways) + beyond
-            a, b = (self._on_picture(origin + end * axes[2]) for end in ends)
+            a, b = (self.on_picture(origin + end * axes[2]) for end in ends)
             marks = bar(a, b, 2.0 * SPINDLE + 1.0, ink=self._ink(link), edge=1.0)
             if lead:
                 marks += self._thread(link, on, SPINDLE / self.scale, lead, 0, ends)
             if number < len(self.settings.screws) and nut[0] not in hidden:
                 by = NUT / self.scale * along[2]
-                c, d = self._on_picture(middle - by), self._on_picture(middle + by)
+                c, d = self.on_picture(middle - by), self.on_picture(middle + by)
                 marks += bar(c, d, 15.0, ink=self._ink(nut[0]))
             yield round(float(origin[2]) / self.size, NEAR_DECIMALS), marks
 
     def _belts(self) -> Iterator[Mark]:
         for belt in self.settings.belts:
-            seen = self._placed(belt.link, belt_line(belt))
-            places = tuple(self._on_picture(one) for one in seen)
+            seen = self.placed(belt.link, belt_line(belt))
+            places = tuple(self.on_picture(one) for one in seen)
             yield Stroke(places, self._ink(belt.link), 1.6, closed=True)
 
     def _cables(self) -> Iterator[Mark]:
         for _, rope, rims in self._ropes:
             for rim in rims:
-                places = tuple(self._on_picture(one) for one in self.view.seen(rim))
+                places = tuple(self.on_picture(one) for one in self.view.seen(rim))
                 yield Stroke(places, "k", 1.2, closed=True, filled=True)
-            yield Stroke(tuple(self._on_picture(one) for one in self.view.seen(rope)), "k", 1.2)
+            yield Stroke(tuple(self.on_picture(one) for one in self.view.seen(rope)), "k", 1.2)
 
     @cached_property
     def _ropes(self) -> list[tuple[Floats, Floats, list[Floats]]]:
@@ -468,7 +480,7 @@ class _Scene:
         for track in self._tracks:
             ink = self._ink(track.link)
             for course in track.lines(SURFACE_LINES):
-                places = self._all_on_picture(self._placed(track.link, course))
+                places = self._all_on_picture(self.placed(track.link, course))
                 if track.is_surface:
                     yield Stroke(places, f"{ink} t", 0.8)
                 else:
@@ -481,14 +493,14 @@ class _Scene:
         for part in self.settings.between:
             if part.kind == "cylinder":
                 foot, eye = (
-                    self._on_picture(self._placed(at.link, np.array([at.vector]))[0])
+                    self.on_picture(self.placed(at.link, np.array([at.vector]))[0])
                     for at in part.ends
                 )
                 yield line(foot, eye, width=2.0)
                 along = eye[0] - foot[0], eye[1] - foot[1]
                 share = TUBE
                 if part.stroke is not None:
-                    ends = [self._placed(at.link, np.array([at.vector]))[0] for at in part.ends]
+                    ends = [self.placed(at.link, np.array([at.vector]))[0] for at in part.ends]
                     length = float(np.linalg.norm(ends[1] - ends[0]))
                     share = min(CUP * part.stroke[0] / length, 1.0) if length else TUBE
                 yield from bar(foot, moved(foot, along, share), THICK, round_ends=False)
@@ -496,7 +508,7 @@ class _Scene:
     def _symbols(self) -> Iterator[Item]:
         for joint in self.joints:
             first, second = self._half(joint, FIRST), self._half(joint, SECOND)
-            place = self._placed(joint.second, np.array([half_frame(joint, SECOND).o]))[0]
+            place = self.placed(joint.second, np.array([half_frame(joint, SECOND).o]))[0]
             near = round(float(place[2]) / self.size, NEAR_DECIMALS)
             yield near, [*self._stops(joint, first, second), *symbol(joint.type, first, second)]
 
@@ -530,9 +542,9 @@ class _Scene:
         frame = half_frame(joint, side)
         point = np.array(frame.o)
         axes = [point + np.array(axis) for axis in (half_axis(joint, side), frame.x, frame.y)]
-        seen = self._placed(link, np.array([point, *axes]))
+        seen = self.placed(link, np.array([point, *axes]))
         along = [(float(a[0] - seen[0, 0]), float(seen[0, 1] - a[1])) for a in seen[1:]]
-        return Half(self._on_picture(seen[0]), *along)
+        return Half(self.on_picture(seen[0]), *along)
 
     def _feet(self) -> Iterator[Mark]:
         for joint in self.joints:
@@ -541,8 +553,8 @@ class _Scene:
                     yield from ground_mark(self._half(joint, side).place)
 
     def _paths(self) -> Iterator[Mark]:
-        for at in self._moving_points():
-            path = tuple(self._on_picture(one) for one in self._path(at.link, at.vector))
+        for at in self.moving_points():
+            path = tuple(self.on_picture(one) for one in self._path(at.link, at.vector))
             if len(path) > 1:
                 yield Stroke(path, f"{self._ink(at.link)} t", 1.0)
             yield Disc(path[0], 1.8, is_ink=True)

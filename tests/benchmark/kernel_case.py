@@ -44,6 +44,7 @@ class PlannedRun:
         self.outputs = OutputPlan(case.layout, self.plan, problem.motion.driven)
         for quantity in wanted:
             self.outputs.add(quantity)
+        self.readout = Readout(self.outputs.outputs, self.outputs.slots, ())
 
     def __call__(
         self,
@@ -54,11 +55,10 @@ class PlannedRun:
     ) -> Batch:
         """Runs all rows; inputs (1, rows), guess (states, rows)."""
         rates, accelerations = driven(self.specimen, inputs.shape[1])
-        readout = Readout(self.outputs.outputs, self.outputs.slots, ())
         return run(
             self.plan,
             RowInputs(inputs, guess, rates, accelerations),
-            Ask(self.demand, readout, iterations=iterations),
+            Ask(self.demand, self.readout, iterations=iterations),
             lanes=lanes,
             # times are those of this thread
             threads=1,

@@ -135,6 +135,8 @@ RIGHT = "links: [ground, body], point: [0, 0, 0], stiffness: {x: 1}"
         (RIGHT.replace("ground", "body"), "same-link", "joined to itself"),
         (f"{RIGHT}, axes: {{x: [1, 0, 0], y: [1, 1, 0]}}", "axes-not-square", "a bushing must be"),
         (f"{RIGHT}, name: body", "name-clash", "already used in links"),
+        (f"{RIGHT}, free: {{rz: 200}}", "bushing-turn", "less than half a turn"),
+        (f"{RIGHT}, free: {{rx: 150, ry: 120}}", "bushing-turn", "less than half a turn"),
         (RIGHT.replace("{x: 1}", "[[1, 0], [0, 1]]"), "wrong-length", ""),
         (
             RIGHT.replace(

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from documents.reading import blocks, page
 
+import mechkin_cli as mk
 from mechkin_cli.__main__ import main
 
 ROOT = Path(__file__).parents[2]
@@ -36,6 +37,12 @@ def test_commands(
     names = {path.name for path in tmp_path.iterdir()}
     told = set(re.findall(r"`([a-zA-Z]+\.(?:csv|svg))`", PAGE))
     assert names == told
+
+
+def test_the_picture() -> None:
+    model = mk.load(ROOT / "mechanisms" / "vibration" / "engine_mounts.yaml")
+    shown = (ROOT / "docs" / "engine_modes.svg").read_text(encoding="utf-8")
+    assert shown == model.vibration(row=2).picture()
 
 
 def test_the_script(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -57,6 +57,7 @@ USUAL: dict[str, Any] = {
     "radius": 0.5,
     "narrow": 1e-2,
     "arc_steps": 100,
+    "arc_work": 1e9,
     "straight": False,
 }
 """Limits of a step that follow a branch."""

@@ -422,16 +422,10 @@ def test_variants_of_an_equilibrium() -> None:
 
 def test_an_answer_is_pickled_and_asked_again() -> None:
     m = mk.load("mechanisms/statics/toggle.yaml")
-    for r in (m.equilibrium("pushed"), m.equilibrium(near={"A.theta": -5})):
+    for r in (m.equilibrium("pushed"), m.equilibrium(near={"A.theta": -5}), m.analyze()):
         again = pickle.loads(pickle.dumps(r))
         assert again["A.theta"].tobytes() == r["A.theta"].tobytes()
-
-
-def test_sensitivities_of_places_that_balance_are_refused() -> None:
-    m = mk.load("mechanisms/statics/toggle.yaml")
-    for run in ("sweep", "pushed"):
-        with pytest.raises(mk.UsageError, match="loads balance"):
-            m.sensitivities(["A.theta"], run=run)
+        assert again.errors["A.theta"].tobytes() == r.errors["A.theta"].tobytes()
 
 
 def test_loads_of_time_are_taken_at_the_moment_that_is_given() -> None:
@@ -478,6 +472,52 @@ def test_a_force_that_follows_its_link_leaves_the_stiffness_unsymmetric() -> Non
     assert [r["A.theta"][0], r["B.theta"][0]] == pytest.approx([0, 0], abs=1e-9)
     assert r["row.event"].tolist() == ["stable"]
     assert np.isnan(r["row.frequency"]).all()
+
+
+def ziegler(force: float, damping: float = 0.0) -> dict[str, Any]:
+    """Two massless links of length 1 on springs of torsion, with a mass of 2 kg where they meet and
+    one of 1 kg at the tip, which a force pushes that follows the second link."""
+    coordinates = [("A", "theta"), ("B", "theta")]
+    return {
+        "format": 1,
+        "plane": "xy",
+        "links": {
+            "a": {"mass": 2, "center_of_mass": [0, 1]},
+            "b": {"mass": 1, "center_of_mass": [0, 2]},
+        },
+        "joints": {
+            "A": {"type": "R", "links": ["ground", "a"], "point": [0, 0]},
+            "B": {"type": "R", "links": ["a", "b"], "point": [0, 1]},
+        },
+        "points": {"tip": {"link": "b", "at": [0, 2]}},
+        "loads": [
+            *(
+                {"type": "spring", "joint": j, "coordinate": c, "stiffness": 1}
+                for j, c in coordinates
+            ),
+            *(
+                {"type": "damper", "joint": j, "coordinate": c, "damping": damping}
+                for j, c in coordinates
+                if damping
+            ),
+            {"type": "force", "link": "b", "point": "tip", "force": [0, -force], "axes": "link"},
+        ],
+    }
+
+
+@pytest.mark.parametrize(
+    ("damping", "critical"),
+    [(0.0, 3.5 - 2**0.5), (0.1, 41 / 28 + 0.1**2 / 2)],
+    ids=["without", "with"],
+)
+def test_a_column_flutters_under_a_force_that_follows_it(damping: float, critical: float) -> None:
+    """H. Ziegler, Ingenieur-Archiv 20, 1952, and with damping G. Herrmann and I.-C. Jong, Journal
+    of Applied Mechanics 32, 1965: a little of it takes a third of the load."""
+    for part, event in ((0.999, "stable"), (1.001, "unstable by flutter")):
+        m = mk.load(ziegler(part * critical, damping))
+        r = m.equilibrium(near={"A.theta": 1, "B.theta": 1})
+        assert [r["A.theta"][0], r["B.theta"][0]] == pytest.approx([0, 0], abs=1e-9)
+        assert r["row.event"].tolist() == [event]
 
 
 def test_equilibria_at_dead_centres_of_the_windows_coordinate() -> None:

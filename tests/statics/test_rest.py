@@ -15,27 +15,7 @@ import mechkin_cli as mk
 
 G = 9.81
 
-LEVER = """
-format: 1
-plane: xy
-units: {length: mm, force: N}
-links:
-  crank: {mass: 1, center_of_mass: [20, 20]}
-  coupler: {mass: 2, center_of_mass: [60, 70]}
-  rocker: {mass: 1.5, center_of_mass: [110, 40]}
-  bob: {mass: 0.7, center_of_mass: [150, 30]}
-joints:
-  A: {type: R, links: [ground, crank], point: [0, 0]}
-  B: {type: R, links: [crank, coupler], point: [0, 40]}
-  C: {type: R, links: [coupler, rocker], point: [120, 80]}
-  D: {type: R, links: [rocker, ground], point: [100, 0]}
-  E: {type: R, links: [rocker, bob], point: [120, 80]}
-points: {P: {link: rocker, at: [110, 40]}, Q: {link: ground, at: [200, 60]}}
-loads:
-  - {type: gravity, g: [0, -9810]}
-  - {type: spring, joint: E, coordinate: theta, stiffness: 300 N*mm/rad}
-  - {type: spring, between: [P, Q], stiffness: 1 N/mm, free: 60}
-"""
+LEVER = Path("benchmarks/mechanisms/lever.yaml").read_text(encoding="utf-8")
 MOTION = "motion: {inputs: {A.theta: {from: 0, to: 360, step: 5}}, rest: [E.theta]}\n"
 
 

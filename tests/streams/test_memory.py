@@ -21,6 +21,16 @@ motion: {{inputs: {{A.theta: {{from: 0, to: 3600, count: {count}}}}}}}
 tables:
   - {{name: t, columns: [D.theta], summary: [max, mean]}}
 """
+PENDULUM = """format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{bob: {{mass: 1, center_of_mass: [0, -1]}}}}
+joints: {{O: {{type: R, links: [ground, bob], point: [0, 0]}}}}
+loads: [{{type: gravity, g: [0, -9.80665]}}]
+responses: {{swing: {{start: {{O.theta: 1}}, time: {{from: 0, to: 3, count: {count}}}}}}}
+tables:
+  - {{name: t, run: swing, columns: [O.theta], summary: [max, mean]}}
+"""
 CHILD = """
 import resource, sys
 limit = int(sys.argv[1])
@@ -36,10 +46,10 @@ print([line.split()[1] for line in open("/proc/self/status") if line.startswith(
 """
 
 
-def peak_of(folder: Path, count: int, limit: int = 0) -> int:
-    """Peak of the address space in bytes of a process that writes so many rows."""
+def peak_of(folder: Path, count: int, limit: int = 0, text: str = FOUR_BAR) -> int:
+    """Peak of the address space in bytes of a process that sums up so many rows."""
     path = folder / f"{count}.yaml"
-    path.write_text(FOUR_BAR.format(count=count))
+    path.write_text(text.format(count=count))
     options = ["--summary-only", "--quiet", "--threads", "1", "--out", str(folder / "out")]
     found = subprocess.run(
         [sys.executable, "-P", "-c", CHILD, str(limit), "analyze", str(path), *options],
@@ -63,3 +73,10 @@ def test_the_limit_is_one(tmp_path: Path) -> None:
     few = peak_of(tmp_path, 200_000)
     with pytest.raises(AssertionError):
         peak_of(tmp_path, 200_000, few - 40_000_000)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_responses_hold_no_moments(tmp_path: Path) -> None:
+    few = peak_of(tmp_path, 200_000, text=PENDULUM)
+    # the moments alone, in two units, would take 64 MB
+    peak_of(tmp_path, 4_000_000, few + 20_000_000, PENDULUM)

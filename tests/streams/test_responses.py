@@ -14,6 +14,9 @@ from references import FILE_OF
 import mechkin_cli as mk
 from mechkin_cli import tolerances
 from mechkin_cli.__main__ import main
+from mechkin_cli.analysis import ended
+from mechkin_cli.response import blocks
+from mechkin_cli.sweep import RunVerdicts
 from mechkin_cli.tables import TableColumn, Words, rows_table
 
 PENDULUM = """format: 1
@@ -142,6 +145,53 @@ def test_blocks_have_the_bytes_of_the_run(
     assert list(map(str, stream.diagnostics)) == list(map(str, whole.diagnostics))
 
 
+@pytest.mark.parametrize(
+    ("name", "asked", "marches"),
+    [
+        ("to the end", ["O.theta"], 1),
+        ("rows that are not reached", ["O.theta"], 1),
+        ("friction", ["A.theta"], 1),
+        # how many rows there are
+        ("a stop between rows", ["O.theta"], 2),
+        # what is measured by energies of all rows
+        ("to the end", ["O.theta", "row.energy_error"], 2),
+    ],
+)
+@pytest.mark.parametrize("rows", [1, 7, 41, 61])
+def test_a_motion_is_gone_through_once(
+    name: str, asked: list[str], marches: int, rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is said of the whole run is known when its last row has been taken."""
+    text = TEXTS[name]
+    model = mk.loads(text)
+    (run,) = model.runs
+    whole = model.respond(run, asked, tables=[])
+    expected = ended(whole.result)
+    worst = RunVerdicts.of(whole.result)
+    worst.measure("energy error", np.asarray(whole.result.energy_error))
+    begun = []
+    march = blocks._March.__init__
+
+    def counted(self: blocks._March, *args: object) -> None:
+        begun.append(1)
+        march(self, *args)  # type: ignore[arg-type]
+
+    small_blocks(monkeypatch, rows)
+    monkeypatch.setattr(blocks._March, "__init__", counted)
+    stream = model.stream(asked, run=run, tables=[], rows=5)
+    values = np.concatenate([block[asked[0]] for block in stream])
+    assert values.tobytes() == whole[asked[0]].tobytes()
+    assert stream.ended == expected
+    assert stream.verdicts.worst == worst.worst
+    assert stream.verdicts.counts == worst.counts
+    assert list(map(str, stream.diagnostics)) == list(map(str, whole.diagnostics))
+    assert len(begun) == (marches if stream.in_blocks else 0)
+    if "row.energy_error" not in asked and stream.in_blocks:
+        # asked for later, it is measured by all rows all the same
+        errors = np.concatenate([block["row.energy_error"] for block in stream])
+        assert errors.tobytes() == whole.result.energy_error.tobytes()
+
+
 def test_a_block_has_the_closed_form() -> None:
     """A body that falls from rest; 3 * 10^5 rows lie within a few steps."""
     text = PENDULUM.format(to=2, count=300_001, stop="").replace(
@@ -190,6 +240,14 @@ def test_too_many_rows_are_not_held(monkeypatch: pytest.MonkeyPatch) -> None:
         model.respond("swing")
     small_blocks(monkeypatch, 10)
     assert sum(block.rows for block in model.stream(run="swing")) == 61
+
+
+def test_who_is_held_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = TEXTS["to the end"] + "limits: {O.theta: {min: -0.5, max: 1.5, restitution: 0.5}}\n"
+    monkeypatch.setattr(tolerances, "MOST_NUMBERS", 100)
+    model = mk.loads(text.split("tables:")[0] + "limits:" + text.split("limits:")[1])
+    with pytest.raises(mk.UsageError, match=r"held whole, as its limits .*: take a larger step"):
+        next(iter(model.stream(["O.theta"], run="swing")))
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:

@@ -15,7 +15,9 @@ import pytest
 from structure.networks import ladder, scissors, shuffled
 
 import mechkin_cli as mk
-from mechkin_cli.plan import home_state
+from mechkin_cli.kernel._kernel import StepLimits, Stepper
+from mechkin_cli.plan import TrackEnd, home_state
+from mechkin_cli.session import follow, step_limits, step_numbers
 from mechkin_cli.structure import Block, SolverGraph
 from mechkin_cli.structure.loop_order import entries_of
 from mechkin_cli.tolerances import MOST_EQUATIONS
@@ -96,6 +98,42 @@ def test_assemblies_beside_the_drawing_are_found_by_search(count: int) -> None:
     assert not flags.any()
     assert np.all(residual <= 1e-12)
     assert np.max(np.abs(states - home[:, None])) < 1e-9
+
+
+@pytest.mark.parametrize("count", [8, 20])
+def test_no_step_leads_over_the_flat_place(count: int) -> None:
+    """Beyond it all bars lean on as a step from before it predicts, to what its test of corrections
+    and tangents allows: the Jacobians alone tell that branches cross there, full ones of 8 storeys
+    and bands of 20."""
+    session, flat, short = driven_on_top(count).session, math.radians(FLAT), 0.05
+    stepper = Stepper.straight(session.plan, [0.0], [1.0], step_limits())
+    node = stepper.close(0.0, home_state(session.layout).tolist())
+    assert node is not None
+    while node.sigma < flat - short:
+        h = min(0.5 * stepper.wanted_step(node), flat - short - node.sigma)
+        node = stepper.step(node, h) if h > 1e-9 else None
+        assert node is not None
+    beyond = stepper.close(flat + short, stepper.predict(node, flat + short - node.sigma).tolist())
+    assert beyond is not None
+    shoe = session.layout.state(list(session.layout.edge_number).index("S"), 0)
+    assert beyond.state[shoe] == pytest.approx(node.state[shoe], abs=1e-9)
+    assert not stepper.judge(node, beyond)
+
+
+def test_a_walk_by_arclength_ends_where_it_would_take_too_much_work() -> None:
+    """With the work of all that it takes the branch point is found, with that of two attempts it is
+    not."""
+    session = driven_on_top(8).session
+    inputs = np.radians(np.linspace(0.0, FLAT + 3.0, 48))[None, :]
+    start, attempt = home_state(session.layout), 17.0**3
+    found = {}
+    for attempts in (2, 1000):
+        limits = StepLimits(**step_numbers() | {"arc_work": attempts * attempt})
+        found[attempts] = follow(session.plan, inputs, start, limits=limits)
+    assert found[1000].ending is not None
+    assert not found[1000].ending.is_dead_centre
+    assert found[2].ending is None
+    assert found[2].end == TrackEnd.STALLED
 
 
 def test_loops_are_closed_where_they_are_short() -> None:

@@ -27,7 +27,7 @@ constexpr char format_of = std::is_same_v<typename Array::Scalar, unsigned char>
 }  // namespace
 
 Arguments::Arguments(const nb::kwargs& given, int parts) : parts_(parts) {
-  given_.reserve(given.size());
+  given_.reserve(given.size()), names_.reserve(given.size()), kept_.reserve(given.size()), ranges_.reserve(given.size());
   for (auto [key, value] : given) given_.push_back({nb::cast<const char*>(key), value.ptr()});
 }
 
@@ -35,8 +35,9 @@ Arguments::Arguments(const nb::kwargs& given, int parts) : parts_(parts) {
 nb::object Arguments::find(const char* name) {
   names_.push_back(name);
   for (std::size_t k = 0; k < given_.size(); ++k) {
-    const std::size_t at = (next_ + k) % given_.size();
-    if (std::strcmp(given_[at].name, name) != 0) continue;
+    const std::size_t at = next_ + k < given_.size() ? next_ + k : next_ + k - given_.size();
+    // a call of the library costs as much as all else here, and what is left out is held against every name
+    if (given_[at].name[0] != name[0] || std::strcmp(given_[at].name, name) != 0) continue;
     next_ = at + 1;
     ++found_;
     return nb::borrow(given_[at].value);

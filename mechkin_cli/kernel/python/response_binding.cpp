@@ -91,6 +91,8 @@ std::vector<MotionStop> stops_of(const Stops& stops) {
 }
 
 // The arrays of a block of rows, which Python takes as often as it is full.
+constexpr double MOST_EXACT = 0x1p54;  // far from where whole numbers of 64 bits end
+
 class TakenByPython : public RowTaker {
  public:
   TakenByPython(nb::object taker, nb::list arrays) : taker_(std::move(taker)), arrays_(std::move(arrays)) {}
@@ -122,7 +124,7 @@ class TakenByPython : public RowTaker {
 
 // `held` are plans; references, for another thread may change the list meanwhile.
 nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, const Rows& first, const Rows& tangent,
-              double begin, const Row& times, const Stops& stops, const DrivenLaws* driven, double tolerance,
+              double begin, const Row& times, const SpacedTimes* spaced, const Stops& stops, const DrivenLaws* driven, double tolerance,
               double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests,
               int iterations, double jump, double radius, bool straight, int lanes, int threads, long block,
               const nb::object& taker) {
@@ -132,7 +134,8 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
   need(method >= 0 && method <= (int)MethodChoice::IMPLICIT, "method: unknown");
   const Plan& p = plans[0]->view();
   need(taker.is_none() || (plans.size() == 1 && block > 0), "taker: of one motion, in blocks of rows");
-  const std::size_t count = plans.size(), every = times.shape(0);
+  need(!spaced || !taker.is_none(), "spaced: with a taker");
+  const std::size_t count = plans.size(), every = spaced ? (std::size_t)spaced->count : times.shape(0);
   const std::size_t rows = taker.is_none() ? every : std::min(every, (std::size_t)block);
   int slots = 0;
   for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2))) slots += t.width;
@@ -145,7 +148,7 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
   // a copy: another thread may change the array; who takes blocks keeps it as it is, as there may be many moments
   std::vector<double> moments;
   if (taker.is_none()) moments.assign(times.data(), times.data() + every);
-  task.moments = (long)every;
+  task.moments = (long)every, task.spaced = spaced;
   task.times = taker.is_none() ? moments.data() : times.data(), task.driven = driven, task.stops = stops_of(stops);
   task.limits = limits_of(tests, iterations, jump, radius, straight);
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
@@ -188,6 +191,22 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
 }  // namespace
 
 void bind_response(nb::module_& m) {
+  nb::class_<SpacedTimes>(m, "SpacedTimes", "Equally spaced moments, which are never held.")
+      .def("__init__",
+           [](SpacedTimes* self, long count, double first, double step, double over, double last, double multiplier,
+              double divisor) {
+             const double numbers[] = {first, step, over, last, multiplier, divisor};
+             need(count > 0 && all_finite(numbers, 6) && over >= 0.0 && multiplier > 0.0 && divisor > 0.0,
+                  "moments: finite numbers, and units above zero");
+             need(over == 0.0 || std::abs(first) + std::abs(step) * (double)count <= MOST_EXACT,
+                  "moments: whole numbers that doubles hold exactly");
+             new (self) SpacedTimes{count, first, step, over, last, multiplier, divisor};
+           },
+           "count"_a, "first"_a, "step"_a, "over"_a, "last"_a, "multiplier"_a, "divisor"_a)
+      .def("at", [](const SpacedTimes& times, long row) {
+        if (row < 0 || row >= times.count) throw nb::index_error("no such row");
+        return times.at(row);
+      }, "row"_a);
   nb::class_<DrivenLaws>(m, "DrivenLaws", "Coordinates driven by laws of time.")
       .def("__init__",
            [](DrivenLaws* self, const TapeStore* tape, std::vector<double> edges, std::vector<double> constants,
@@ -212,7 +231,7 @@ void bind_response(nb::module_& m) {
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
   // turns, friction told to rows, work put in and lost; flags (variants, rows). One row more is for the place of a stop. Rows that were not
   // reached hold nan.
-  m.def("respond", &run_response, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "stops"_a, "driven"_a.none(),
+  m.def("respond", &run_response, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "spaced"_a.none() = nb::none(), "stops"_a, "driven"_a.none(),
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a, "straight"_a,
         "lanes"_a, "threads"_a, "block"_a = 0, "taker"_a.none() = nb::none());
 }

@@ -332,12 +332,12 @@ void bind_stepper(nb::module_& m) {
               double longest_step, double least_step, int most_steps, double tight, double coarse, double accept,
               double pivot, int iterations, double same_line, double knot, double corner_cosine, double stray,
               double angle_step, double angle_miss, double angle_bend, double plan_step, double arc_pivot, double radius, double narrow,
-              int arc_steps, bool straight) {
+              int arc_steps, double arc_work, bool straight) {
              for (double cosine : {turn_cosine, corner_cosine})
                need(cosine >= -1.0 && cosine <= 1.0, "limits: a cosine is a number from -1 to 1");
              for (double limit : {turn, bend, jump, infill, longest_step, least_step, tight, coarse, accept, pivot,
                                   same_line, knot, stray, angle_step, angle_miss, angle_bend, plan_step, arc_pivot,
-                                  radius, narrow})
+                                  radius, narrow, arc_work})
                need(limit >= 0.0, "limits: a limit is a number from 0 on");
              need(most_steps >= 0 && most_steps <= MOST_STEPS, "limits: 0 to 1000000 steps");
              need(iterations >= 0 && iterations <= MOST_ITERATIONS, "limits: 0 to 10000 iterations");
@@ -346,7 +346,7 @@ void bind_stepper(nb::module_& m) {
              limits.turn_cosine = turn_cosine, limits.turn = turn, limits.bend = bend, limits.jump = jump;
              limits.infill = infill, limits.longest_step = longest_step, limits.least_step = least_step;
              limits.most_steps = most_steps, limits.tight = tight, limits.coarse = coarse, limits.accept = accept;
-             limits.pivot = pivot, limits.arc_pivot = arc_pivot, limits.radius = radius, limits.narrow = narrow, limits.arc_steps = arc_steps;
+             limits.pivot = pivot, limits.arc_pivot = arc_pivot, limits.radius = radius, limits.narrow = narrow, limits.arc_steps = arc_steps, limits.arc_work = arc_work;
              limits.straight = straight;
              limits.iterations = iterations, limits.same_line = same_line, limits.knot = knot;
              limits.corner_cosine = corner_cosine, limits.stray = stray, limits.angle_step = angle_step;
@@ -356,7 +356,7 @@ void bind_stepper(nb::module_& m) {
            nb::kw_only(), "turn_cosine"_a, "turn"_a, "bend"_a, "jump"_a, "infill"_a, "longest_step"_a, "least_step"_a,
            "most_steps"_a, "tight"_a, "coarse"_a, "accept"_a, "pivot"_a, "iterations"_a, "same_line"_a, "knot"_a,
            "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "angle_bend"_a, "plan_step"_a, "arc_pivot"_a, "radius"_a, "narrow"_a,
-           "arc_steps"_a, "straight"_a);
+           "arc_steps"_a, "arc_work"_a, "straight"_a);
 
   nb::class_<Node>(m, "Node")
       .def_ro("sigma", &Node::sigma)

@@ -94,17 +94,41 @@ double inverse_square(const Matrix& matrix, const Entries& pivots) {
   return square;
 }
 
+// Rows of a large matrix that are read together, by as many others at once: each number is brought from the cache for more
+// products, whose sums are those of one row after the other.
+constexpr int TOGETHER = 4;
+
+void add_products(const double* a, int n, int i, int rows, int k, double* out) {
+  double factor[TOGETHER][TOGETHER];
+  bool none = true;
+  for (int r = 0; r < rows; ++r)
+    for (int l = 0; l < TOGETHER; ++l) {
+      factor[r][l] = k + l < n ? a[(i + r) * n + k + l] : 0.0;
+      none = none && factor[r][l] == 0.0;
+    }
+  if (none) return;  // loops that do not act on each other
+  const double* row[TOGETHER];
+  for (int l = 0; l < TOGETHER; ++l) row[l] = a + (k + l < n ? k + l : k) * n;
+  for (int r = 0; r < rows; ++r) {
+    double* const to = out + (i + r) * n;
+    const double f0 = factor[r][0], f1 = factor[r][1], f2 = factor[r][2], f3 = factor[r][3];
+    for (int j = 0; j < n; ++j) to[j] = to[j] + f0 * row[0][j] + f1 * row[1][j] + f2 * row[2][j] + f3 * row[3][j];
+  }
+}
+
 // The square of a matrix, N x N or of n x n, into another.
 template <int N>
 void square_into(const double* a, int size, double* out) {
   const int n = N ? N : size;
   for (int e = 0; e < n * n; ++e) out[e] = 0.0;
+  if (!N) {
+    for (int i = 0; i < n; i += TOGETHER)
+      for (int k = 0; k < n; k += TOGETHER) add_products(a, n, i, i + TOGETHER <= n ? TOGETHER : n - i, k, out);
+    return;
+  }
   for (int i = 0; i < n; ++i)
-    for (int k = 0; k < n; ++k) {
-      const double factor = a[i * n + k];
-      if (!N && factor == 0.0) continue;  // loops that do not act on each other
-      for (int j = 0; j < n; ++j) out[i * n + j] += factor * a[k * n + j];
-    }
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j) out[i * n + j] += a[i * n + k] * a[k * n + j];
 }
 
 // Calls use(bound) with one bound of the spectral radius after the other until it says that this is enough. `power` holds
@@ -238,19 +262,20 @@ double spectral_radius_bound(Matrix e) {
   return least.found;
 }
 
-Singular singular_vectors(Matrix a) {
-  const int m = a.rows, n = a.columns;
-  Matrix v(n, n);
+Singular singular_vectors(const Matrix& matrix) {
+  const int n = matrix.columns;
+  // columns as rows, which are read one after the other
+  Matrix a = transposed(matrix), v(n, n);
   for (int i = 0; i < n; ++i) v(i, i) = 1.0;
   const auto product = [&](int p, int q) {
     double s = 0.0;
-    for (int i = 0; i < m; ++i) s += a(i, p) * a(i, q);
+    for (int i = 0; i < a.columns; ++i) s += a(p, i) * a(q, i);
     return s;
   };
   const auto rotate = [](Matrix& x, int p, int q, double c, double s) {
-    for (int i = 0; i < x.rows; ++i) {
-      const double one = x(i, p), other = x(i, q);
-      x(i, p) = c * one - s * other, x(i, q) = s * one + c * other;
+    for (int i = 0; i < x.columns; ++i) {
+      const double one = x(p, i), other = x(q, i);
+      x(p, i) = c * one - s * other, x(q, i) = s * one + c * other;
     }
   };
   bool again = true;
@@ -277,7 +302,7 @@ Singular singular_vectors(Matrix a) {
   Singular found = {std::vector<double>(n), Matrix(n, n)};
   for (int j = 0; j < n; ++j) {
     found.value[j] = size[order[j]];
-    for (int i = 0; i < n; ++i) found.v(i, j) = v(i, order[j]);
+    for (int i = 0; i < n; ++i) found.v(i, j) = v(order[j], i);
   }
   return found;
 }

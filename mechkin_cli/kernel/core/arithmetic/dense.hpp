@@ -92,7 +92,7 @@ struct Singular {
   std::vector<double> value;
   Matrix v;
 };
-Singular singular_vectors(Matrix a);
+Singular singular_vectors(const Matrix& matrix);
 
 Matrix transposed(const Matrix& a);
 // The matrix with one row, or a multiple of one column, more.

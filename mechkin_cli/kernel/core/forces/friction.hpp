@@ -116,6 +116,10 @@ inline void read_contacts(const Plan& p, const Workspace& w, Vec3* out, int stri
   for (int k = 0; k < p.frictions; ++k) {
     const Friction& f = p.friction[k];
     const Wrench by = joint_wrench(p, w, p.place[f.place]);
+    if (f.contact_end == f.contact_begin + 1 && p.contact[f.contact_begin].code == CONTACT_TOTAL) {
+      out[f.contact_begin * stride] = Pack(p.contact[f.contact_begin].share) * by.force;
+      continue;
+    }
     const Vec3 axis = r.axis[k], moment = by.moment - cross(r.point[k], by.force);
     const Vec3 radial = by.force - dot(axis, by.force) * axis, tilt = cross(moment, axis);
     for (int c = f.contact_begin; c < f.contact_end; ++c) {
@@ -147,6 +151,19 @@ inline void rub(Balance& balance, int k, Pack force) {
   const Wrench drag = force * balance.w.rubbing.drag[k];
   balance.apply(j.second, Pack(-1.0) * drag);
   balance.apply(j.first, drag);
+}
+
+// The sums over the tree of a unit of friction k: nothing of it goes beyond where the ways of both links to ground meet.
+inline void rub_way(Balance& balance, int k) {
+  const Plan& p = balance.p;
+  const Workspace& w = balance.w;
+  const JointPlace& j = p.place[p.friction[k].place];
+  // parents have lower numbers
+  for (int a = j.first, b = j.second; a != b;)
+    if (a > b)
+      w.carried[a] -= w.rubbing.drag[k], a = p.joints[a].parent;
+    else
+      w.carried[b] += w.rubbing.drag[k], b = p.joints[b].parent;
 }
 
 // Friction that a motion tells acts as a load: of what sticks, or is just starting to slip, no rate tells it.
@@ -197,8 +214,13 @@ inline void find_gains(Balance& balance, int shift) {
   w.rubbing.level = balance.level = reaction_level(p, w);
   for (int f = 0; f < p.frictions; ++f) {
     for (int k = 0; k < p.links; ++k) w.carried[k] = zero_wrench();
-    rub(balance, f, Pack(1.0));
-    distribute(p, w, 0);
+    if (p.hung_bodies) {
+      rub(balance, f, Pack(1.0));
+      distribute(p, w, 0);
+    } else {
+      rub_way(balance, f);
+      distribute_sums(p, w, 0);
+    }
     read_contacts_of(p, w, f, r.drag[f], r.gain + f, p.frictions);
   }
 }

@@ -11,6 +11,7 @@ struct Rubbing {
   Wrench* drag;     // frictions: what a unit of friction takes from the second link
   Pack *speed, *coefficient, *force, *normal, *state, *at_rest;  // frictions: of the surfaces, and what was found
   Pack *matrix, *bound, *border, *right, *step, *weight;  // of the small system: squares, then vectors
+  Pack* per_weight;       // frictions: 1 / weight
   Pack *origin, *newton;  // frictions: where a step begins, and Newton's step from there
   Mask* swap;
   Vec3 *axis, *point;  // frictions: now
@@ -36,7 +37,7 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   r->applied = (Wrench*)take(p.links * sizeof(Wrench));
   r->drag = (Wrench*)take(n * sizeof(Wrench));
   Pack** const vectors[] = {&r->speed, &r->coefficient, &r->force, &r->normal, &r->state,
-                            &r->at_rest, &r->step, &r->weight, &r->origin, &r->newton};
+                            &r->at_rest, &r->step, &r->weight, &r->per_weight, &r->origin, &r->newton};
   for (Pack** each : vectors) *each = (Pack*)take(n * pack);
   r->matrix = (Pack*)take(n * n * pack);
   r->bound = (Pack*)take(n * n * pack);

@@ -30,6 +30,10 @@ constexpr double FRICTION_SHORTEST = 1.0 / 1024.0;
 
 MECHKIN_INLINE Pack magnitude(const Vec3& a) { return sqrt(dot(a, a)); }
 MECHKIN_INLINE Pack sum_of_components(const Vec3& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+// Whether a contact's load is a single number, which stands in x.
+MECHKIN_INLINE bool has_one_component(const Contact& at) {
+  return at.code == CONTACT_ALONG || at.code == CONTACT_TRANSMITTED;
+}
 // At least |a|, at most 1.16 times as much: it is linear wherever one component is the largest, and not below |a| on the
 // edges of that region, (1, 0, 0), (1, 1, 0) and (1, 1, 1).
 MECHKIN_INLINE Pack above_magnitude(const Vec3& a) {
@@ -39,9 +43,9 @@ MECHKIN_INLINE Pack above_magnitude(const Vec3& a) {
 }
 
 // The Lipschitz matrix L of the friction forces into r.bound, `size` being at least the length of a vector.
-template <class Size>
+template <int N, class Size>
 MECHKIN_INLINE void bound_friction(const Plan& p, const Rubbing& r, Size&& size) {
-  const int n = p.frictions;
+  const int n = N ? N : p.frictions;
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j) {
       Pack sum = 0.0;
@@ -101,11 +105,12 @@ inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
 
 // The weights w of the norm in which friction contracts; those that no proof holds for, and all that depend on them, are
 // marked in r.state and have no friction.
+template <int N>
 inline void prove_unique(const Plan& p, const Rubbing& r) {
-  const int n = p.frictions;
+  const int n = N ? N : p.frictions;
   for (int k = 0; k < n; ++k) r.weight[k] = 1.0;
   // by a bound without roots first, which mostly does
-  bound_friction(p, r, [](Vec3 a) { return above_magnitude(a); });
+  bound_friction<N>(p, r, [](const Vec3& a) { return above_magnitude(a); });
   Mask plainly = all_lanes(true), weighed = all_lanes(true);
   for (int k = 0; k < n; ++k) plainly = plainly & contracts(r, n, k, r.weight);
   if (all(plainly)) return;
@@ -114,16 +119,17 @@ inline void prove_unique(const Plan& p, const Rubbing& r) {
   for (int k = 0; k < n; ++k) r.weight[k] = select(weighed & ~plainly, r.step[k], r.weight[k]);
   const Mask proven = plainly | weighed;
   if (all(proven)) return;
-  bound_friction(p, r, [](Vec3 a) { return magnitude(a); });
+  bound_friction<0>(p, r, [](const Vec3& a) { return magnitude(a); });
   prove_thoroughly(p, r, proven);
 }
 
-// What a contact carries with the friction forces in r.force. One along a direction has a single component.
+// What a contact carries with the friction forces in r.force.
+template <int N>
 MECHKIN_INLINE Vec3 contact_load(const Plan& p, const Rubbing& r, int c) {
-  const int n = p.frictions;
+  const int n = N ? N : p.frictions;
   const Vec3* const gain = r.gain + c * n;
   Vec3 load = r.base[c];
-  if (p.contact[c].code == CONTACT_ALONG)
+  if (has_one_component(p.contact[c]))
     for (int j = 0; j < n; ++j) load.x += r.force[j] * gain[j].x;
   else
     for (int j = 0; j < n; ++j) load += r.force[j] * gain[j];
@@ -131,15 +137,20 @@ MECHKIN_INLINE Vec3 contact_load(const Plan& p, const Rubbing& r, int c) {
 }
 
 // Normal loads of the friction forces in r.force, with the contacts' loads and their magnitudes, and mu N - z into r.right.
+template <int N, bool SOFT>
 inline void load_contacts(const Plan& p, const Rubbing& r) {
-  const int n = p.frictions;
+  const int n = N ? N : p.frictions;
   for (int k = 0; k < n; ++k) {
     Pack normal = 0.0;
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
-      const Vec3 load = contact_load(p, r, c);
-      r.load[c] = load;
-      r.size[c] = sqrt(dot(load, load) + r.softness * r.softness);
-      normal += Pack(p.contact[c].weight) * r.size[c];
+      const Vec3 load = contact_load<N>(p, r, c);
+      Pack size;
+      if constexpr (SOFT)
+        size = sqrt(dot(load, load) + r.softness * r.softness);
+      else
+        size = has_one_component(p.contact[c]) ? abs(load.x) : magnitude(load);
+      r.load[c] = load, r.size[c] = size;
+      normal += Pack(p.contact[c].weight) * size;
     }
     r.normal[k] = normal;
     r.right[k] = r.coefficient[k] * normal - r.force[k];
@@ -147,8 +158,9 @@ inline void load_contacts(const Plan& p, const Rubbing& r) {
 }
 
 // Newton's matrix I - mu dN/dz there.
+template <int N>
 inline void differentiate_loads(const Plan& p, const Rubbing& r) {
-  const int n = p.frictions;
+  const int n = N ? N : p.frictions;
   for (int k = 0; k < n; ++k) {
     Pack* const row = r.matrix + k * n;
     for (int j = 0; j < n; ++j) row[j] = k == j ? 1.0 : 0.0;
@@ -157,7 +169,7 @@ inline void differentiate_loads(const Plan& p, const Rubbing& r) {
       const Vec3 along = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), r.size[c])) * r.load[c];
       const Pack share = r.coefficient[k] * Pack(p.contact[c].weight);
       const Vec3* const gain = r.gain + c * n;
-      if (p.contact[c].code == CONTACT_ALONG)
+      if (has_one_component(p.contact[c]))
         for (int j = 0; j < n; ++j) row[j] -= share * (along.x * gain[j].x);
       else
         for (int j = 0; j < n; ++j) row[j] -= share * dot(along, gain[j]);
@@ -167,30 +179,40 @@ inline void differentiate_loads(const Plan& p, const Rubbing& r) {
 
 // r.right := r.matrix^-1 r.right. Where friction contracts the matrix is diagonally dominant, columns in parts of w, and
 // needs no exchange of rows (Varga, On recurring theorems on diagonal dominance, 1976).
-inline void eliminate(const Rubbing& r, int n) {
+template <int N>
+inline void eliminate(const Rubbing& r, int runtime) {
+  const int n = N ? N : runtime;
+  // known to be apart, where their size is known
+  Pack own_matrix[N ? N * N : 1], own_right[N ? N : 1];
+  Pack *const a = N ? own_matrix : r.matrix, *const b = N ? own_right : r.right;
+  for (int e = 0; N && e < n * n; ++e) a[e] = r.matrix[e];
+  for (int k = 0; N && k < n; ++k) b[k] = r.right[k];
   for (int k = 0; k < n; ++k) {
-    const Pack inverse = Pack(1.0) / r.matrix[k * n + k];
-    r.matrix[k * n + k] = inverse;
+    const Pack inverse = Pack(1.0) / a[k * n + k];
+    a[k * n + k] = inverse;
     for (int i = k + 1; i < n; ++i) {
-      const Pack l = r.matrix[i * n + k] * inverse;
-      for (int j = k + 1; j < n; ++j) r.matrix[i * n + j] -= l * r.matrix[k * n + j];
-      r.right[i] -= l * r.right[k];
+      const Pack l = a[i * n + k] * inverse;
+      for (int j = k + 1; j < n; ++j) a[i * n + j] -= l * a[k * n + j];
+      b[i] -= l * b[k];
     }
   }
   for (int k = n - 1; k >= 0; --k) {
-    for (int j = k + 1; j < n; ++j) r.right[k] -= r.matrix[k * n + j] * r.right[j];
-    r.right[k] *= r.matrix[k * n + k];
+    for (int j = k + 1; j < n; ++j) b[k] -= a[k * n + j] * b[j];
+    b[k] *= a[k * n + k];
   }
+  for (int k = 0; N && k < n; ++k) r.right[k] = b[k];
 }
 
 // What is left of the equations, and the largest friction force, in the norm in which friction contracts.
 struct LeftOver {
   Pack left, scale;
 };
+template <int N>
 inline LeftOver left_over(const Plan& p, const Rubbing& r) {
+  const int n = N ? N : p.frictions;
   LeftOver found = {Pack(0.0), Pack(0.0)};
-  for (int k = 0; k < p.frictions; ++k) {
-    const Pack per = Pack(1.0) / r.weight[k], part = abs(r.right[k]) * per;
+  for (int k = 0; k < n; ++k) {
+    const Pack per = r.per_weight[k], part = abs(r.right[k]) * per;
     found.left = select(part <= found.left, found.left, part);  // a NaN wins
     found.scale = max(max(abs(r.force[k]), r.coefficient[k] * r.normal[k]) * per, found.scale);
   }
@@ -198,15 +220,16 @@ inline LeftOver left_over(const Plan& p, const Rubbing& r) {
 }
 
 // Newton's method from r.force on for lanes that are not `done`; loads and residuals of all are those of r.force after it.
+template <int N>
 inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
-  const int n = p.frictions;
+  const int n = N ? N : p.frictions;
   // each lane tries a length of Newton's step from `origin`; that of zero stands for z := mu N(z)
   Mask moved = all_lanes(false);
   Pack before = __builtin_inf(), length = 0.0;
   const Pack infinite = __builtin_inf();
   for (int iteration = 0; iteration < FRICTION_ITERATIONS; ++iteration) {
-    load_contacts(p, r);
-    const LeftOver now = left_over(p, r);
+    load_contacts<N, false>(p, r);
+    const LeftOver now = left_over<N>(p, r);
     const Mask back = ~done & (length > Pack(0.0)) & ~(now.left <= (Pack(1.0) - Pack(0.1) * length) * before);
     done = done | (~back & (now.left <= Pack(FRICTION_TIGHT) * now.scale));
     done = done | (back & (before <= Pack(FRICTION_STALLED) * now.scale));
@@ -230,20 +253,20 @@ inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
       r.origin[k] = select(go, r.force[k], r.origin[k]);
       r.step[k] = select(go, r.force[k] + r.right[k], r.step[k]);
     }
-    differentiate_loads(p, r);
-    eliminate(r, n);
+    differentiate_loads<N>(p, r);
+    eliminate<N>(r, n);
     for (int k = 0; k < n; ++k) {
       r.newton[k] = select(go, r.right[k], r.newton[k]);
       r.force[k] = select(go, r.force[k] + r.right[k], r.force[k]);
     }
   }
   // where the forces were moved after their loads had been found, or were not found in time
-  if (any(moved) || !all(done)) load_contacts(p, r);
+  if (any(moved) || !all(done)) load_contacts<N, false>(p, r);
 }
 
 // A start next to the solution for lanes that are not `done`: magnitudes sqrt(|load|^2 + softness^2) have no kinks and the
 // same Lipschitz matrix; their solution is followed while the softness falls from far above the loads to their rounding.
-inline void start_softly(const Plan& p, Rubbing& r, Mask done) {
+MECHKIN_RARE void start_softly(const Plan& p, Rubbing& r, Mask done) {
   const int n = p.frictions;
   Pack size = 0.0;
   for (int c = 0; c < p.contacts; ++c) size = max(size, sum_of_components(r.base[c]));
@@ -253,9 +276,9 @@ inline void start_softly(const Plan& p, Rubbing& r, Mask done) {
   }
   r.softness = Pack(FRICTION_SOFTEST) * size;
   for (int level = 0; level < FRICTION_LEVELS; ++level) {
-    load_contacts(p, r);
-    differentiate_loads(p, r);
-    eliminate(r, n);
+    load_contacts<0, true>(p, r);
+    differentiate_loads<0>(p, r);
+    eliminate<0>(r, n);
     for (int k = 0; k < n; ++k) r.force[k] += r.right[k];
     if (level & 1) r.softness *= Pack(0.5);
   }
@@ -265,9 +288,11 @@ inline void start_softly(const Plan& p, Rubbing& r, Mask done) {
 
 // Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
 // coefficients, base and gain; r.state is FRICTION_DECIDED.
-inline void solve_friction(const Plan& p, Rubbing& r) {
-  const int n = p.frictions;
-  prove_unique(p, r);
+template <int N>
+inline void solve_sized_friction(const Plan& p, Rubbing& r) {
+  const int n = N ? N : p.frictions;
+  prove_unique<N>(p, r);
+  for (int k = 0; k < n; ++k) r.per_weight[k] = Pack(1.0) / r.weight[k];
   // by the reactions without friction
   for (int k = 0; k < n; ++k) {
     Pack normal = 0.0;
@@ -276,18 +301,29 @@ inline void solve_friction(const Plan& p, Rubbing& r) {
     r.force[k] = r.coefficient[k] * normal;
   }
   r.softness = 0.0;
-  iterate_friction(p, r, all_lanes(false));
-  LeftOver last = left_over(p, r);
+  iterate_friction<N>(p, r, all_lanes(false));
+  LeftOver last = left_over<N>(p, r);
   Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   if (all(solved)) return;
   start_softly(p, r, solved);
-  iterate_friction(p, r, solved);
-  last = left_over(p, r);
+  iterate_friction<0>(p, r, solved);
+  last = left_over<N>(p, r);
   solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   for (int k = 0; k < n; ++k) {
     const Mask open = ~solved & (r.state[k] == Pack((double)FRICTION_DECIDED));
     r.state[k] = select(open, Pack((double)FRICTION_NOT_SOLVED), r.state[k]);
   }
+}
+inline void solve_friction(const Plan& p, Rubbing& r) {
+  if constexpr (SIZED_BLOCKS) {
+    switch (p.frictions) {
+      case 1: return solve_sized_friction<1>(p, r);
+      case 2: return solve_sized_friction<2>(p, r);
+      case 3: return solve_sized_friction<3>(p, r);
+      case 4: return solve_sized_friction<4>(p, r);
+    }
+  }
+  solve_sized_friction<0>(p, r);
 }
 
 }  // namespace

@@ -63,13 +63,16 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift, Pack level)
   }
 }
 
-// From what each link needs of its joints (w.carried) to what the joints transmit: sums over the tree, closing wrenches,
-// efforts.
-inline void distribute(const Plan& p, Workspace& w, int shift) {
-  sum_over_tree(p, w);
+// From these sums over the tree (w.carried) to what the joints transmit: closing wrenches, efforts.
+inline void distribute_sums(const Plan& p, Workspace& w, int shift) {
   closing_wrenches(p, w, shift, shift ? tree_level(p, w) : Pack(0.0));
   stretch_hung_bodies(p, w);
   input_efforts(p, w);
+}
+// The same from what each link needs of its joints.
+inline void distribute(const Plan& p, Workspace& w, int shift) {
+  sum_over_tree(p, w);
+  distribute_sums(p, w, shift);
 }
 
 // The largest component of the links' twists.

@@ -27,7 +27,7 @@ struct ShareTrial {
 inline ShareTrial try_share(const Plan& p, Rubbing& r, const Pack* largest, const Pack* slip, Pack power) {
   const int n = p.frictions;
   for (int k = 0; k < n; ++k) r.coefficient[k] = largest[k];
-  load_contacts(p, r);
+  load_contacts<0, false>(p, r);
   Pack taken = 0.0;
   for (int k = 0; k < n; ++k) {
     r.normal[k] *= largest[k];
@@ -50,8 +50,8 @@ inline void newton_share(const Plan& p, Rubbing& r, const Pack* largest, const P
     r.force[k] = at[k];
     r.coefficient[k] = share * largest[k];
   }
-  load_contacts(p, r);
-  differentiate_loads(p, r);
+  load_contacts<0, false>(p, r);
+  differentiate_loads<0>(p, r);
   Pack rest = power;
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) r.border[k * m + j] = r.matrix[k * n + j];

@@ -322,21 +322,34 @@ inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& 
   return r;
 }
 
-// What a force, or a moment about its point, of a joint keeps where it leaves motions free: what is zero by the kind of
-// joint is zero, and no rounding. Of two directions the second is taken square to the first.
-inline Vec3 without_free(const Plan& p, const Workspace& w, const JointPlace& j, bool slide, Vec3 a) {
+// Without what acts along free motions from the `first` on; of two directions the second is taken square to the first.
+inline Vec3 take_free_out(const Plan& p, const Workspace& w, const JointPlace& j, int first, Vec3 a) {
+  const int slide = p.free[first].slide;
   Vec3 before = zero3();
-  for (int f = j.free_begin; f < j.free_end; ++f) {
+  for (int f = first; f < j.free_end; ++f) {
     const FreeMotion& free = p.free[f];
-    if ((free.slide != 0) != slide) continue;
+    if (free.slide != slide) continue;
     if (free.code == FREE_ALL) return zero3();
     Vec3 u = carried_vector(w, free.link, free.vector);
     if (free.code == FREE_SQUARE) return dot(u, a) * u;
-    u = u - dot(before, u) * before;
+    if (f > first) u = u - dot(before, u) * before;
     a = a - (dot(u, a) * inverse_or_zero(dot(u, u))) * u;
     before = u;
   }
   return a;
+}
+// What a force, or a moment about its point, of a joint keeps where it leaves motions free: what is zero by the kind of
+// joint is zero, and no rounding.
+MECHKIN_INLINE Vec3 without_free(const Plan& p, const Workspace& w, const JointPlace& j, bool slide, const Vec3& a) {
+  for (int f = j.free_begin; f < j.free_end; ++f)
+    if ((p.free[f].slide != 0) == slide) return take_free_out(p, w, j, f, a);
+  return a;
+}
+// Whether nothing is kept.
+MECHKIN_INLINE bool is_free_of_moments(const Plan& p, const JointPlace& j) {
+  for (int f = j.free_begin; f < j.free_end; ++f)
+    if (!p.free[f].slide && p.free[f].code == FREE_ALL) return true;
+  return false;
 }
 
 }  // namespace

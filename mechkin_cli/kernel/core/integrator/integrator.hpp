@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "result.hpp"
@@ -144,11 +145,33 @@ struct IntegratorSettings {
   MethodChoice method = MethodChoice::AUTOMATIC;
 };
 
-// Times of the rows, rising; `stride` numbers from lane to lane, 0 where all have the same.
+// Equally spaced times, each made when it is asked for by the operations of building/spacing.py: very many are never held.
+// Number k is (first + k step) / over in whole numbers that doubles hold exactly; without `over`, first + k step, and `last`
+// the last one. In s it is that over the `divisor`, or times the `multiplier` where that is 1.
+struct SpacedTimes {
+  long count;
+  double first, step, over, last, multiplier, divisor;
+
+  double at(long row) const {
+    const double k = (double)row;
+    double time;
+    if (over != 0.0)
+      time = (double)((std::int64_t)first + (std::int64_t)row * (std::int64_t)step) / over;
+    else
+      time = row == count - 1 ? last : first + k * step;
+    return divisor != 1.0 ? time / divisor : multiplier != 1.0 ? time * multiplier : time;
+  }
+};
+
+// Times of the rows, rising; `stride` numbers from lane to lane, 0 where all have the same. All have those of `spaced`, if
+// there is one.
 struct RowTimes {
   const double* time;
   long count;
   long stride;
+  const SpacedTimes* spaced = nullptr;
+
+  double at(int lane, long row) const { return spaced ? spaced->at(row) : time[lane * stride + row]; }
 };
 
 enum class LaneEnd : unsigned char {

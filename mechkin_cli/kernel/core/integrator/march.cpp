@@ -24,7 +24,7 @@ Refusal check(const Motion& motion, const IntegratorSettings& s, const double* t
     double before = time[i];
     REQUIRE(std::isfinite(before), "times are finite");
     for (long r = 0; r < rows.count; ++r) {
-      const double t = rows.time[i * rows.stride + r];
+      const double t = rows.at(i, r);
       REQUIRE(std::isfinite(t) && (r ? t > before : t >= before), "the times of rows rise from the start on");
       before = t;
     }

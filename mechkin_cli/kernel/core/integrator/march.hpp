@@ -66,7 +66,7 @@ class March {
   void size_up(const Flags& mask);
 
   // march_rows.cpp
-  double row_time(int lane, long row) const { return rows_.time[lane * rows_.stride + row]; }
+  double row_time(int lane, long row) const { return rows_.at(lane, row); }
   bool has_row(const LaneControl& c) const { return c.next_row < rows_.count; }
   double cut_for_rows(int lane, double step);
   void rows_inside(Method& method, Flags* mask);

@@ -27,6 +27,7 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_DRIVE, p.drive, p.drives);
   visit(ARRAY_FREE, p.free, p.frees);
   visit(ARRAY_LOOP, p.loop, p.loop_entries);
+  visit(ARRAY_LOOP_COLUMN, p.loop_column, p.loop_columns);
   visit(ARRAY_TERM, p.term, p.terms);
   visit(ARRAY_BLOCK, p.block, p.blocks);
   visit(ARRAY_ORDER, p.order, p.order_count);

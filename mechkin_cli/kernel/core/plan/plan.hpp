@@ -67,6 +67,8 @@ struct ClosingJointOf {
                              // per its magnitude, y, in on_first
   int is_pair_of_forces;     // and another such force in on_second
   int is_pushed;             // what goes by the magnitude stands among the frictions, which are solved for together
+  int columns_begin, known_begin, columns_end;  // into Plan::loop_column: its block's unknowns, then what is known
+  int meets_all;             // whether these are all unknowns of its block
 };
 
 // One freedom of a loop: a tree joint on the way to the closing joint's second link (+1) or first link (-1). Of a relation
@@ -75,6 +77,13 @@ struct LoopEntry {
   int joint;
   double sign;
   int term;
+};
+
+// A column of the tree that a loop passes, in the order of its entries.
+struct LoopColumn {
+  int loop, freedom;  // the entry, into Plan::loop, and the freedom of its joint
+  int column;
+  int place;          // among the unknowns of the closing joint's block, -1: it is known there
 };
 
 // A term of a relation: `factor` times the coordinate of an axis, which is the freedom of the entry's tree joint; -1: of
@@ -235,7 +244,7 @@ struct Actuator {
 // What plans of one structure share.
 struct PlanShape {
   int links, states, columns, closings, hung_bodies, blocks, inputs, loads, load_values;
-  int places, axes, drives, frees, loop_entries, terms, order_count, unknowns, size_points, frictions, contacts, bushings;
+  int places, axes, drives, frees, loop_entries, loop_columns, terms, order_count, unknowns, size_points, frictions, contacts, bushings;
   int largest_block;  // rows
   int charts;         // coordinates of the one block's chart, whose unknowns they determine; 0: inputs do
   int driven;         // inputs, the first ones, that motors or actuators answer for; the others are held
@@ -243,6 +252,7 @@ struct PlanShape {
   const Actuator* actuator;
   const InputConstraint* input_constraint;
   const LoopEntry* loop;
+  const LoopColumn* loop_column;  // closing joint after closing joint
   const Block* block;
   const int* order;
   const int* unknown;        // columns solved for, grouped by block

@@ -190,6 +190,31 @@ void PlanBuilder::find_relations() {
   }
 }
 
+// The columns that each loop passes, those that its block solves for first.
+void PlanBuilder::find_loop_columns() {
+  for (int index = 0; index < (int)block_.size(); ++index)
+    for (int c = block_[index].closing_begin; c < block_[index].closing_end; ++c) {
+      ClosingJoint& j = closing_[c];
+      std::vector<LoopColumn> known;
+      std::vector<char> met(block_[index].size, 0);
+      j.columns_begin = (int)loop_column_.size();
+      for (int l = j.loop_begin; l < j.loop_end; ++l) {
+        const TreeJoint& t = joints_[loop_[l].joint];
+        for (int f = 0; f < kernel_unit()->tree_types[t.type].freedoms; ++f) {
+          const int column = t.column + f;
+          const bool solved = column_block_[column] == index;
+          const LoopColumn at = {l, f, column, solved ? column_place_[column] : -1};
+          (solved ? loop_column_ : known).push_back(at);
+          if (solved) met[at.place] = 1;
+        }
+      }
+      j.known_begin = (int)loop_column_.size();
+      loop_column_.insert(loop_column_.end(), known.begin(), known.end());
+      j.columns_end = (int)loop_column_.size();
+      j.meets_all = std::count(met.begin(), met.end(), 0) == 0;
+    }
+}
+
 // Where the entries of a block are, if most of its matrix is zeros.
 void PlanBuilder::find_band(Block* block) {
   const int n = block->size, inner = block->rows - block->charts;
@@ -197,13 +222,9 @@ void PlanBuilder::find_band(Block* block) {
   std::vector<int> first(n, inner), end(n, 0);
   for (int c = block->closing_begin; c < block->closing_end; ++c) {
     const ClosingJoint& j = closing_[c];
-    for (int l = j.loop_begin; l < j.loop_end; ++l) {
-      const TreeJoint& t = joints_[loop_[l].joint];
-      for (int f = 0; f < kernel_unit()->tree_types[t.type].freedoms; ++f) {
-        if (column_block_[t.column + f] != (int)(block - block_.data())) continue;
-        const int u = column_place_[t.column + f];
-        first[u] = std::min(first[u], j.row), end[u] = std::max(end[u], j.row + equations(j));
-      }
+    for (int k = j.columns_begin; k < j.known_begin; ++k) {
+      const int u = loop_column_[k].place;
+      first[u] = std::min(first[u], j.row), end[u] = std::max(end[u], j.row + equations(j));
     }
   }
   // unknowns before `reach` may hold an equation, and any of those not yet gone holds what one of them does
@@ -255,6 +276,7 @@ Result<FrozenPlan> PlanBuilder::finish() {
   sort_drives();
   find_turns();
   find_relations();
+  find_loop_columns();
   find_bands();
   REQUIRE(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
   program_.find_turns(arrays());
@@ -280,6 +302,7 @@ Plan PlanBuilder::arrays() const {
   p.frees = (int)free_.size();
   p.drives = (int)drive_.size();
   p.loop_entries = (int)loop_.size();
+  p.loop_columns = (int)loop_column_.size();
   p.terms = (int)term_.size();
   p.order_count = (int)order_.size();
   p.unknowns = (int)unknown_.size();
@@ -291,7 +314,7 @@ Plan PlanBuilder::arrays() const {
   for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
   p.joints = joints_.data(), p.closing = closing_.data(), p.hung = hung_.data();
   p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data(), p.free = free_.data();
-  p.loop = loop_.data(), p.term = term_.data(), p.block = block_.data();
+  p.loop = loop_.data(), p.loop_column = loop_column_.data(), p.term = term_.data(), p.block = block_.data();
   p.order = order_.data(), p.unknown = unknown_.data(), p.band = band_.data(), p.rest = rest_.data();
   p.input_column = input_column_.data();
   p.column_state = column_state_.data(), p.column_joint = column_joint_.data();

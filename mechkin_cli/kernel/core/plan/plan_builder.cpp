@@ -124,7 +124,7 @@ Refusal PlanBuilder::add_closing_joint(int type, int first, int second, const Fr
   CHECK(check_loop(loop));
   const auto [begin, end] = add_loop(loop);
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
-  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end, 0, 0, 0, 0});
+  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end, 0, 0, 0, 0, 0, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
@@ -208,7 +208,7 @@ Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& ter
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
   const Frame none = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
   const int type = length ? RELATION_OF_LENGTHS : RELATION_OF_ANGLES;
-  closing_.push_back({type, -1, -1, none, none, sum, -1, 0.0, 0, begin, (int)loop_.size(), 0, 0, 0, 0});
+  closing_.push_back({type, -1, -1, none, none, sum, -1, 0.0, 0, begin, (int)loop_.size(), 0, 0, 0, 0, 0, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
   return {};
 }
@@ -267,7 +267,7 @@ Refusal PlanBuilder::add_hung_links(int body, int rod, int first, int second, co
   joints_[body].hung = (int)hung_.size();
   const std::size_t at = closing_.size() * sizeof(ClosingJoint), hung_at = hung_.size() * sizeof(HungBody);
   hung_.push_back(hung);
-  closing_.push_back({PAIR_DISTANCE, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end, 0, 0, 0, 0});
+  closing_.push_back({PAIR_DISTANCE, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end, 0, 0, 0, 0, 0, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   const int end_point = (int)constants_.size() + 9;
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);

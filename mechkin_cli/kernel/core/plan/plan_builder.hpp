@@ -119,6 +119,7 @@ class PlanBuilder {
   void sort_drives();
   void find_turns();
   void find_relations();
+  void find_loop_columns();
   void find_band(Block* block);
   void find_bands();
   Plan arrays() const;
@@ -135,6 +136,7 @@ class PlanBuilder {
   std::vector<ClosingJoint> closing_;
   std::vector<HungBody> hung_;
   std::vector<LoopEntry> loop_;
+  std::vector<LoopColumn> loop_column_;
   std::vector<Term> term_;
   std::vector<Block> block_;
   std::vector<int> order_, unknown_, rest_, input_column_;

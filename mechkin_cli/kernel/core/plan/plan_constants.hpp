@@ -74,7 +74,7 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
     closing[c] = {j.type, j.first, j.second, {}, {},
                   lanes.number([&](const LanePlan& p) { return p.closing[c].parameter; }),
                   j.slide, j.slide_sign, j.row, j.loop_begin, j.loop_end, j.path_begin, j.path_end,
-                  j.is_pair_of_forces, j.is_pushed};
+                  j.is_pair_of_forces, j.is_pushed, j.columns_begin, j.known_begin, j.columns_end, j.meets_all};
     lanes.frame(&closing[c].on_first, [&](const LanePlan& p) -> const auto& { return p.closing[c].on_first; });
     lanes.frame(&closing[c].on_second, [&](const LanePlan& p) -> const auto& { return p.closing[c].on_second; });
   }

@@ -25,12 +25,6 @@ std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, cons
 
 long entries_of(const Block& b) { return b.band_entries ? b.band_entries : (long)b.rows * b.size; }
 
-int slots_of(const std::vector<ClosingTurn>& turns) {
-  int slots = 0;
-  for (const ClosingTurn& t : turns) slots += t.width;
-  return slots;
-}
-
 }  // namespace
 
 ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionStart>& starts, const MotionLimits& limits,

@@ -31,16 +31,17 @@ Refusal respond_pack(const ResponseTask& task, const MotionUnit& unit, long firs
   IntegratorSettings settings = task.settings;
   MotionLimits limits = task.limits;
   const long moments = task.moments < 0 ? rows[0].rows : task.moments;
+  const RowTimes times = {task.times, moments, 0, task.spaced};
   limits.longest = __builtin_inf();
   if (reads_time(*starts[0].plan) && moments > 0) {
     settings.dense_rows = (int)std::min<long>(moments + 1, 1 << 30);
-    limits.longest = PART_OF_TIME * (task.times[moments - 1] - starts[0].time);
+    limits.longest = PART_OF_TIME * (times.at(0, moments - 1) - starts[0].time);
   }
   ChartedMotion motion(unit, starts, limits, rows, task.stops, task.driven);
   std::vector<double> begin;
   for (const MotionStart& s : starts) begin.push_back(s.time);
   Result<std::vector<LaneReport>> reached =
-      integrate(motion, settings, begin.data(), motion.start(), {task.times, moments, 0});
+      integrate(motion, settings, begin.data(), motion.start(), times);
   CHECK(reached.refusal());
   const std::vector<LaneReport>& found = *reached;
   for (int l = 0; l < unit.lanes && first + l < count; ++l)

@@ -5,6 +5,8 @@
 // is no starting vector that could miss a direction, and clusters of singular values do no harm.
 #pragma once
 
+#include <utility>
+
 #include "arithmetic/linear.hpp"
 
 namespace {
@@ -12,13 +14,13 @@ namespace {
 // C = U^-1 L^-1 D^-1 for the factors P A = L U, D the equations' weights in the order of the pivots; row i
 // of C over the weight of unknown i. Its singular values are those of the inverse of the weighted matrix.
 template <int N>
-MECHKIN_INLINE void weighted_inverse(Factors f, int runtime, Pack* inverse_weight, const double* column_weight,
-                                     const int* unknown, Pack* c) {
+MECHKIN_INLINE void weighted_inverse(const Pack* a, const Mask* swap, int runtime, Pack* inverse_weight,
+                                     const double* column_weight, const int* unknown, Pack* c) {
   const int n = N ? N : runtime;
   int s = 0;
   for (int k = 0; k < n; ++k)
     for (int i = k + 1; i < n; ++i) {
-      const Mask swapped = f.swap[s++];
+      const Mask swapped = swap[s++];
       const Pack x = inverse_weight[k], y = inverse_weight[i];
       inverse_weight[k] = select(swapped, y, x);
       inverse_weight[i] = select(swapped, x, y);
@@ -28,15 +30,15 @@ MECHKIN_INLINE void weighted_inverse(Factors f, int runtime, Pack* inverse_weigh
     for (int i = 0; i < j; ++i) c[i * n + j] = 0.0;
     for (int i = j + 1; i < n; ++i) {
       Pack sum = 0.0;
-      for (int k = j; k < i; ++k) sum -= f.a[i * n + k] * c[k * n + j];
+      for (int k = j; k < i; ++k) sum -= a[i * n + k] * c[k * n + j];
       c[i * n + j] = sum;
     }
   }
   for (int i = n - 1; i >= 0; --i)
     for (int j = 0; j < n; ++j) {
       Pack sum = c[i * n + j];
-      for (int k = i + 1; k < n; ++k) sum -= f.a[i * n + k] * c[k * n + j];
-      c[i * n + j] = sum * f.a[i * n + i];
+      for (int k = i + 1; k < n; ++k) sum -= a[i * n + k] * c[k * n + j];
+      c[i * n + j] = sum * a[i * n + i];
     }
   for (int i = 0; i < n; ++i) {
     const Pack scale = 1.0 / column_weight[unknown[i]];
@@ -69,9 +71,8 @@ MECHKIN_INLINE Singles larger(Singles a, Singles b) { return a < b ? b : a; }
 MECHKIN_INLINE Doubles larger(Doubles a, Doubles b) { return a < b ? b : a; }
 
 // out = a^T a, symmetric (n x n); returns its trace.
-template <int N, class Numbers>
-MECHKIN_INLINE Numbers gram(const Numbers* a, int runtime, Numbers* out) {
-  const int n = N ? N : runtime;
+template <class Numbers>
+inline Numbers gram(const Numbers* a, int n, Numbers* out) {
   Numbers trace = {};
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) {
@@ -80,6 +81,36 @@ MECHKIN_INLINE Numbers gram(const Numbers* a, int runtime, Numbers* out) {
       out[i * n + j] = sum, out[j * n + i] = sum;
       if (i == j) trace += sum;
     }
+  return trace;
+}
+
+// Calls f with 0, 1 ... N - 1 as constants: what is written N times lets a matrix stand in registers.
+template <int... K, class F>
+MECHKIN_INLINE void each_constant(std::integer_sequence<int, K...>, F&& f) {
+  (f(std::integral_constant<int, K>()), ...);
+}
+template <int N, class F>
+MECHKIN_INLINE void each_of(F&& f) {
+  each_constant(std::make_integer_sequence<int, N>(), f);
+}
+// An entry of a symmetric matrix of which the upper half is there.
+template <int N>
+constexpr int upper(int i, int j) { return i < j ? i * N + j : j * N + i; }
+
+// The upper half of a^T a, a of known size, or with SYMMETRIC of known size and by its upper half; returns its trace.
+template <int N, bool SYMMETRIC, class Numbers>
+MECHKIN_INLINE Numbers upper_gram(const Numbers* a, Numbers* out) {
+  Numbers trace = {};
+  const auto entry = [a](int k, int i) __attribute__((always_inline)) { return a[SYMMETRIC ? upper<N>(k, i) : k * N + i]; };
+  each_of<N>([&](auto i) __attribute__((always_inline)) {
+    each_of<N - i()>([&](auto off) __attribute__((always_inline)) {
+      constexpr int row = i(), column = i() + off();
+      Numbers sum = entry(0, row) * entry(0, column);
+      each_of<N - 1>([&](auto k) __attribute__((always_inline)) { sum += entry(k() + 1, row) * entry(k() + 1, column); });
+      out[upper<N>(row, column)] = sum;
+      if constexpr (off() == 0) trace += sum;
+    });
+  });
   return trace;
 }
 
@@ -95,20 +126,42 @@ MECHKIN_INLINE Numbers multiplicity(Numbers t1, Numbers t2, int n) {
   return n == 1 ? one : root(r * (one + others * y * y));
 }
 
+// The largest eigenvalue from the traces after so many squarings.
+template <class Numbers>
+MECHKIN_INLINE Numbers eigenvalue_of(Numbers t1, Numbers t2, int n, int squarings) {
+  Numbers value = t2 / multiplicity(t1, t2, n);
+  for (int s = 0; s <= squarings; ++s) value = root(value);
+  return value;
+}
 // The largest eigenvalue of a symmetric matrix (n x n, of trace 1), to 2 %; both arrays are room for powers.
-template <int N, class Numbers>
-MECHKIN_INLINE Numbers largest_eigenvalue(Numbers* power, Numbers* other, int runtime) {
-  const int n = N ? N : runtime, squarings = n > 6 ? 5 : 4;
+template <class Numbers>
+inline Numbers largest_eigenvalue(Numbers* power, Numbers* other, int n) {
+  const int squarings = n > 6 ? 5 : 4;
   Numbers t1 = {}, t2 = {};
   for (int s = 0; s < squarings; ++s) {
-    t1 = gram<N>(power, runtime, other);
+    t1 = gram(power, n, other);
     Numbers* const before = power;
     power = other, other = before;
   }
   for (int e = 0; e < n * n; ++e) t2 += power[e] * power[e];
-  Numbers value = t2 / multiplicity(t1, t2, n);
-  for (int s = 0; s <= squarings; ++s) value = root(value);
-  return value;
+  return eigenvalue_of(t1, t2, n, squarings);
+}
+// The same of a small one by its upper half.
+template <int N, class Numbers>
+MECHKIN_INLINE Numbers largest_eigenvalue_of_small(Numbers* power) {
+  static_assert(N <= 6);
+  Numbers t1 = {}, t2 = {}, other[N * N];
+  for (int s = 0; s < 2; ++s) {
+    upper_gram<N, true>(power, other);
+    t1 = upper_gram<N, true>(other, power);
+  }
+  each_of<N>([&](auto i) __attribute__((always_inline)) {
+    each_of<N>([&](auto j) __attribute__((always_inline)) {
+      const Numbers x = power[upper<N>(i(), j())];
+      t2 += x * x;
+    });
+  });
+  return eigenvalue_of(t1, t2, N, 4);
 }
 
 // The largest singular value of the inverse of diag(1 / inverse_weight) A diag(column_weight), A as factored.
@@ -122,29 +175,37 @@ struct InverseNorm {
 template <int N>
 MECHKIN_INLINE void estimate_together(InverseNorm* pack, int count, const double* column_weight, const int* unknown) {
   static_assert(N > 0);
-  Singles power[N * N], other[N * N];
+  Singles power[N * N];
   Pack trace[PACKS_OF_ESTIMATE];
   for (int k = 0; k < count; ++k) {
-    Pack *const c = pack[k].scratch, *const g = c + N * N;
-    weighted_inverse<N>(pack[k].f, N, pack[k].inverse_weight, column_weight, unknown, c);
-    trace[k] = gram<N>(&c->v, N, &g->v);
+    // in places of their own: what may be written by any name is read again each time
+    Pack a[N * N], weight[N], c[N * N], g[N * N];
+    for (int e = 0; e < N * N; ++e) a[e] = pack[k].f.a[e];
+    for (int i = 0; i < N; ++i) weight[i] = pack[k].inverse_weight[i];
+    weighted_inverse<N>(a, pack[k].f.swap, N, weight, column_weight, unknown, c);
+    trace[k] = upper_gram<N, false>(&c->v, &g->v);
     // the largest eigenvalue is now between 1 / n and 1
     const Pack inverse = Pack(1.0) / trace[k];
-    for (int e = 0; e < N * N; ++e) put_half(power[e], k, __builtin_convertvector((g[e] * inverse).v, HalfSingles));
+    each_of<N>([&](auto i) __attribute__((always_inline)) {
+      each_of<N - i()>([&](auto off) __attribute__((always_inline)) {
+        constexpr int e = upper<N>(i(), i() + off());
+        put_half(power[e], k, __builtin_convertvector((g[e] * inverse).v, HalfSingles));
+      });
+    });
   }
   if (count < PACKS_OF_ESTIMATE)
     for (int e = 0; e < N * N; ++e) put_half(power[e], 1, HalfSingles{} + 1);
-  const Singles value = largest_eigenvalue<N>(power, other, N);
+  const Singles value = largest_eigenvalue_of_small<N>(power);
   for (int k = 0; k < count; ++k) pack[k].value = sqrt(half_of(value, k) * trace[k]);
 }
 
 inline void estimate_alone(InverseNorm& pack, const double* column_weight, const int* unknown) {
   const int n = pack.f.n;
   Pack *const c = pack.scratch, *const g = c + n * n;
-  weighted_inverse<0>(pack.f, n, pack.inverse_weight, column_weight, unknown, c);
-  const Pack trace = gram<0>(&c->v, n, &g->v), inverse = Pack(1.0) / trace;
+  weighted_inverse<0>(pack.f.a, pack.f.swap, n, pack.inverse_weight, column_weight, unknown, c);
+  const Pack trace = gram(&c->v, n, &g->v), inverse = Pack(1.0) / trace;
   for (int e = 0; e < n * n; ++e) g[n * n + e] = g[e] * inverse;
-  pack.value = sqrt(Pack(largest_eigenvalue<0>(&g[n * n].v, &c->v, n)) * trace);
+  pack.value = sqrt(Pack(largest_eigenvalue(&g[n * n].v, &c->v, n)) * trace);
 }
 
 inline void find_inverse_norms(InverseNorm* pack, int count, const double* column_weight, const int* unknown) {

@@ -89,14 +89,9 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
     }
     const Closure& k = w.closure[c];
     Twist a = zero_twist();
-    for (int l = j.loop_begin; l < j.loop_end; ++l) {
-      const TreeJoint& t = p.joints[p.loop[l].joint];
-      const Pack sign = p.loop[l].sign;
-      with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {
-        for (int i = 0; i < entry.freedoms; ++i)
-          if (unknown_index(p, index, t.column + i) < 0)
-            a += (sign * w.rate[t.column + i]) * w.screw[t.column + i];
-      });
+    for (int at = j.known_begin; at < j.columns_end; ++at) {
+      const LoopColumn& met = p.loop_column[at];
+      a += (Pack(p.loop[met.loop].sign) * w.rate[met.column]) * w.screw[met.column];
     }
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       if constexpr (!entry.is_relation) {

@@ -52,6 +52,7 @@ inline Vec3 joint_force(const Plan& p, const Workspace& w, const JointPlace& j, 
   return without_free(p, w, j, true, r.force);
 }
 inline Vec3 joint_moment(const Plan& p, const Workspace& w, const JointPlace& j, const Wrench& r) {
+  if (is_free_of_moments(p, j)) return zero3();
   return without_free(p, w, j, false, r.moment - cross(carried_point(w, j.point_on, j.point), r.force));
 }
 inline Vec3 output_joint(const Plan& p, const Workspace& w, int type, int index) {
@@ -184,21 +185,28 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
 template <class Number, class RowValue>
 inline void write_output(const Plan& p, const Workspace& w, const Balance* balance, const RowValue& row_value,
                          const OutputOf<Number>& o, const Writer& out) {
+  // most columns by far are no more than read
+  if (o.type == OUT_STATE || o.type == OUT_RATE || o.type == OUT_ACCELERATION) {
+    const Pack* const from = o.type == OUT_STATE ? w.q : o.type == OUT_RATE ? w.rate : w.acceleration;
+    return out.put(o.slot, Pack(o.factor) * from[o.index]);
+  }
   Pack value[3];
   const int width = output_value(p, w, balance, row_value, o, value);
   for (int k = 0; k < width; ++k) out.put(o.slot + k, value[k]);
 }
 
-// A joint's force and moment, which are mostly asked for one after the other, from one wrench; whether these are such.
+// A joint's force and moment, which are mostly asked for one after the other, from one wrench.
 template <class Number>
-inline bool write_wrench(const Plan& p, const Workspace& w, const OutputOf<Number>& force,
+MECHKIN_INLINE bool are_of_one_wrench(const OutputOf<Number>& force, const OutputOf<Number>& moment) {
+  return force.type == OUT_JOINT_FORCE && moment.type == OUT_JOINT_MOMENT && force.index == moment.index;
+}
+template <class Number>
+inline void write_wrench(const Plan& p, const Workspace& w, const OutputOf<Number>& force,
                          const OutputOf<Number>& moment, const Writer& out) {
-  if (force.type != OUT_JOINT_FORCE || moment.type != OUT_JOINT_MOMENT || force.index != moment.index) return false;
   const JointPlace& j = p.place[force.index];
   const Wrench r = joint_wrench(p, w, j);
   out.put(force.slot, Pack(force.factor) * joint_force(p, w, j, r));
   out.put(moment.slot, Pack(moment.factor) * joint_moment(p, w, j, r));
-  return true;
 }
 
 }  // namespace

@@ -136,24 +136,14 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
     const Closure& k = w.closure[c];
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack* const rows = a + j.row * n;
-      const auto clear = [&](int u) __attribute__((always_inline)) {
-        for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = 0.0;
-      };
-      for (int u = 64; u < n; ++u) clear(u);
-      std::uint64_t written = 0;  // of the first 64 columns, a bit each: mostly all of them are
-      for (int l = j.loop_begin; l < j.loop_end; ++l) {
-        const TreeJoint& t = p.joints[p.loop[l].joint];
-        for (int f = 0; f < freedoms_of(t.type); ++f) {
-          const int u = unknown_index(p, index, t.column + f);
-          if (u < 0) continue;
-          Pack column[entry.equations];
-          closing_column(p, w.curve, k, p.loop[l], f, w.screw[t.column + f], entry, column);
-          for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = column[i];
-          if (u < 64) written |= std::uint64_t(1) << u;
-        }
+      if (!j.meets_all)
+        for (int e = 0; e < entry.equations * n; ++e) rows[e] = 0.0;
+      for (int at = j.columns_begin; at < j.known_begin; ++at) {
+        const LoopColumn& met = p.loop_column[at];
+        Pack column[entry.equations];
+        closing_column(p, w.curve, k, p.loop[met.loop], met.freedom, w.screw[met.column], entry, column);
+        for (int i = 0; i < entry.equations; ++i) rows[i * n + met.place] = column[i];
       }
-      for (int u = 0; u < n && u < 64; ++u)
-        if (!(written >> u & 1)) clear(u);
     });
   }
   if (!b.charts) return;

@@ -124,15 +124,11 @@ inline void band_jacobian(const Plan& p, Workspace& w, int index, const BlockMat
     const ClosingJoint& j = p.closing[c];
     const Closure& k = w.closure[c];
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      for (int l = j.loop_begin; l < j.loop_end; ++l) {
-        const TreeJoint& t = p.joints[p.loop[l].joint];
-        for (int f = 0; f < freedoms_of(t.type); ++f) {
-          const int u = unknown_index(p, index, t.column + f);
-          if (u < 0) continue;
-          Pack column[entry.equations];
-          closing_column(p, w.curve, k, p.loop[l], f, w.screw[t.column + f], entry, column);
-          for (int i = 0; i < entry.equations; ++i) *band.in_column(u, j.row + i) = column[i];
-        }
+      for (int at = j.columns_begin; at < j.known_begin; ++at) {
+        const LoopColumn& met = p.loop_column[at];
+        Pack column[entry.equations];
+        closing_column(p, w.curve, k, p.loop[met.loop], met.freedom, w.screw[met.column], entry, column);
+        for (int i = 0; i < entry.equations; ++i) *band.in_column(met.place, j.row + i) = column[i];
       }
     });
   }
@@ -174,18 +170,22 @@ inline void moving_screws(const Plan& p, Workspace& w, const Block& b) {
 // Moves the states of a block by the increments of its unknowns.
 inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* step, Mask moving) {
   const Block& b = p.block[index];
-  for (int o = b.joint_begin; o < b.joint_end; ++o) {
-    const TreeJoint& t = p.joints[p.order[o]];
-    with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {
-      Pack delta[3];
-      bool touched = false;
-      for (int f = 0; f < entry.freedoms; ++f) {
-        const int u = unknown_index(p, index, t.column + f);
-        delta[f] = u < 0 ? Pack(0.0) : step[u];
-        touched = touched || u >= 0;
-      }
-      if (touched) advance(entry, w.q + t.state, delta, moving);
-    });
+  for (int u = 0; u < b.size; ++u) {
+    const int column = p.unknown[b.column_begin + u], state = p.column_state[column];
+    if (state >= 0) {
+      w.q[state] = select(moving, w.q[state] + step[u], w.q[state]);
+      continue;
+    }
+    // an orientation with the first of its unknowns
+    const TreeJoint& t = p.joints[p.column_joint[column]];
+    Pack delta[3];
+    bool is_first = true;
+    for (int f = 0; f < 3; ++f) {
+      const int other = unknown_index(p, index, t.column + f);
+      delta[f] = other < 0 ? Pack(0.0) : step[other];
+      is_first = is_first && (other < 0 || t.column + f >= column);
+    }
+    if (is_first) advance(Orientation{}, w.q + t.state, delta, moving);
   }
 }
 
@@ -249,6 +249,7 @@ struct Closed {
 
 // A closed block of one pack on its way to its verdict.
 struct Judged {
+  Judged(Workspace& at, const Closed& of) : w(at), closed(of) {}
   Workspace& w;
   const Closed& closed;
   Pack side, condition;  // sign of a square block's determinant; no number where none is wanted
@@ -284,10 +285,11 @@ inline Mask step_again(const Workspace& w, const BlockMatrices& at, Pack before,
 
 // Newton's method on a block for one pack of rows.
 struct Closing {
+  explicit Closing(Workspace& at) : w(at) {}
   Workspace& w;
   bool over = false;
   Mask polished = all_lanes(false), done = all_lanes(false), again = all_lanes(false);
-  Residual residual = {};
+  Residual residual;
   Pack correction = 0.0, last_step = __builtin_inf();
 };
 
@@ -424,7 +426,7 @@ inline Closed close_explicitly(const Plan& p, Workspace& w, int index, const Req
 template <bool AGAIN>
 inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
   if (p.block[index].is_explicit) return close_explicitly(p, w, index, r);
-  Closing c = {w};
+  Closing c(w);
   close_packs<AGAIN>(p, &c, 1, index, r);
   return closed_block(p, c, index, r);
 }

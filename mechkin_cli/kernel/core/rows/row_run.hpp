@@ -93,10 +93,10 @@ void read_friction(const Plan& p, const Request& r, Workspace& w, const Reader& 
 constexpr bool FACTORS_SERVE_AGAIN = PARTS > 1;
 
 // An output with all parts of its numbers.
-inline auto output_of(const Request& r, int number) {
+inline decltype(auto) output_of(const Request& r, int number) {
   const Output& o = r.wanted.output[number];
   if constexpr (PARTS == 1) {
-    return o;
+    return (o);
   } else {
     const Output* const low = r.wanted_second.output ? &r.wanted_second.output[number] : nullptr;
     OutputOf<TwoParts> both = {o.type, o.index, o.order, o.freedom, o.slot, {}, {o.factor, low ? low->factor : 0.0}};
@@ -215,12 +215,27 @@ struct RowPack {
     if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
     write_flags(r.flags, in, converged, side);
   }
+  // A coordinate of a closing joint with those of its derivatives that stand behind it, for they share much; how many.
+  int write_closing(int number, const Writer& out) const {
+    const Output* const o = r.wanted.output + number;
+    const int left = r.wanted.count - number;
+    int count = 1;
+    while (count < left && o[count].type == OUT_CLOSING && o[count].index == o->index && o[count].freedom == o->freedom &&
+           o[count].order == o->order + count)
+      ++count;
+    Pack found[4];
+    closing_coordinate(p, w, o->index, o->freedom, o->order, o->order + count - 1, found);
+    for (int k = 0; k < count; ++k) out.put(o[k].slot, Pack(output_of(r, number + k).factor) * found[o[k].order]);
+    return count;
+  }
   void write_outputs(const Balance* balance) const {
     const Writer out = writer(r.outputs);
     const int count = r.wanted.count;
     for (int o = 0; o < count; ++o)
-      if (balance && o + 1 < count && write_wrench(p, w, output_of(r, o), output_of(r, o + 1), out))
-        ++o;
+      if (balance && o + 1 < count && are_of_one_wrench(r.wanted.output[o], r.wanted.output[o + 1]))
+        write_wrench(p, w, output_of(r, o), output_of(r, o + 1), out), ++o;
+      else if (r.wanted.output[o].type == OUT_CLOSING)
+        o += write_closing(o, out) - 1;
       else
         write_output(p, w, balance, RowValues{r, in}, output_of(r, o), out);
   }
@@ -259,13 +274,13 @@ inline bool level_is_wanted(const Request& r) {
 constexpr int TOGETHER = PARTS == 1 ? 2 : 1;
 
 inline void close_rows(const Plan& p, const Request& r, RowPack* pack, int count, int b) {
-  Closing closing[] = {{pack[0].w}, {pack[count - 1].w}};
+  Closing closing[] = {Closing(pack[0].w), Closing(pack[count - 1].w)};
   close_packs<FACTORS_SERVE_AGAIN>(p, closing, count, b, r);
   const Closed closed[] = {closed_block(p, closing[0], b, r),
                            count > 1 ? closed_block(p, closing[1], b, r) : Closed{}};
   for (int k = 0; k < count; ++k) pack[k].take_closed(closed[k]);
   if (!r.demand) return;
-  Judged judged[] = {{pack[0].w, closed[0], {}, {}}, {pack[count - 1].w, closed[1], {}, {}}};
+  Judged judged[] = {{pack[0].w, closed[0]}, {pack[count - 1].w, closed[1]}};
   judge_blocks(p, b, r, judged, count, [&](int k, const BlockMatrices& at) { pack[k].write_jacobian(b, at); });
   for (int k = 0; k < count; ++k) pack[k].take_verdict(b, judged[k]);
 }
@@ -310,8 +325,8 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
       for (int j = 0; j < p.rest_count; ++j) jerk_link(p, k.w, p.rest[j]);
     });
   }
-  each([&](RowPack& k) { k.write_motion(); });
   each([&](RowPack& k) {
+    k.write_motion();
     if (r.demand & DEMAND_FORCES)
       k.balance([&](int t) { return k.in.get(r.constraint_rates, t); });
     else if (r.outputs)

@@ -354,6 +354,24 @@ double Arc::own_step(const Node& n) const {
   return std::fmin(most, std::fmin(limits_.bend, limits_.turn) / std::sqrt(bend));
 }
 
+double Arc::step_of_blocks(const Node& a, const Node& b) const {
+  double most = HUGE_VAL;
+  int row = 0, column = 0;
+  for (int k = 0; k < plan_.blocks; ++k) {
+    if (!own_[k]) continue;
+    const Block& block = plan_.block[k];
+    Matrix from(block.rows, block.size), to = from;
+    for (int i = 0; i < block.rows; ++i)
+      for (int j = 0; j < block.size; ++j) {
+        from(i, j) = a.extended(row + i, column + j);
+        to(i, j) = b.extended(row + i, column + j);
+      }
+    most = std::fmin(most, 0.8 * limits_.radius * (b.place - a.place) / LeastSquares(to).change_bound(from));
+    row += block.rows, column += block.size;
+  }
+  return most;
+}
+
 bool Arc::same_side(const Node& a, Node* b, int* blame) {
   const double h = b->place - a.place;
   Node half = a;

@@ -30,6 +30,8 @@ class Arc : public Stepper {
   }
   // The step that its own blocks alone would want.
   double own_step(const Node& node) const;
+  // The step over which each of its own blocks by itself would stay as regular as it has to, seen from that between two nodes.
+  double step_of_blocks(const Node& a, const Node& b) const;
 
   bool owns(int block) const { return own_[block]; }
   bool carries(int block) const { return own_[block] || before_[block] || carried_[block]; }

@@ -19,6 +19,8 @@ constexpr double DOUBT = 1e-8;
 // How far from the last node it may lie, and how far in parts of the way over which it was extrapolated: steps end where the
 // least singular value is the root of a rounding, which it is the farther off the more loops lie singular at once.
 constexpr double NEAR = 1e-5, NEAR_PART = 1e-3;
+// Loops that lie singular at once from which on it is so much farther off: 2e-5 with 27 of them, 9e-5 and 1.5e-4 with 81.
+constexpr double FEW_LOOPS = 16.0;
 // Ways beyond this (arclength, rad and parts of the size) make it no farther: what runs away has long ones.
 constexpr double LONG = 0.1;
 // Way before it from which its states are predicted: the third order leaves 1e-13, rounding over the way 1e-12.
@@ -86,7 +88,7 @@ double place_over(Arc& arc, const Node& base, double span, BranchPointAhead* fou
     for (double& x : roots) x = root(x, order);
     double doubt = HUGE_VAL, sigma_doubt = HUGE_VAL;
     const double place = inverse_zero(places, roots, &doubt), sigma = inverse_zero(sigmas, roots, &sigma_doubt);
-    if (doubt < best) best = doubt, *found = {base, place, sigma};
+    if (doubt < best) best = doubt, *found = {base, place, sigma, order};
   }
   return best;
 }
@@ -104,7 +106,8 @@ bool branch_point_ahead(Arc& arc, const std::vector<Node>& nodes, BranchPointAhe
     const double doubt = way > 0.0 ? place_over(arc, *base, last - base->place, &seen) : HUGE_VAL;
     if (doubt < best) best = doubt, *found = seen;
   }
-  const double most = std::max(NEAR, NEAR_PART * std::min(last - found->base.place, LONG));
+  const double most = std::max(NEAR, NEAR_PART * std::min(last - found->base.place, LONG)) *
+                      std::max(1.0, found->order / FEW_LOOPS);
   return best <= DOUBT && std::fabs(found->base.place + found->distance - last) <= most;
 }
 

@@ -7,6 +7,7 @@
 struct BranchPointAhead {
   Node base;
   double distance = 0.0, sigma = 0.0;
+  int order = 1;  // of the zero
 };
 
 // Where beyond some nodes, which come near to it, the matrix [J g; t^T] becomes singular; false where they do not tell. It

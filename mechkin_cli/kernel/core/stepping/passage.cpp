@@ -45,9 +45,8 @@ constexpr double WAY_BEHIND = 0.1;
 constexpr int MOST_BACK = 100;
 // Rate and second derivative of sigma by arclength that are rounding.
 constexpr double AT_REST = 1e-9;
-// Attempts of steps times the cube of the equations that are walked together, each some sixty products of matrices: half a
-// minute. Up to 60 equations all steps that a walk may have; a branch point takes some 50, of 240 equations yet.
-constexpr double MOST_ARC_WORK = 1e9;
+// Equations from which on bounds of a matrix are wide beside those of its blocks.
+constexpr double MANY_EQUATIONS = 60.0;
 // Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
 constexpr double SAME_BEND = 0.2;
 
@@ -132,7 +131,7 @@ class Walker {
     int refuses = -1;  // the block that refused the last step
     Node mark = a;
     const double rows = arc.equations() + 1.0, cube = rows * rows * rows;
-    while (p->steps + p->rejected < limits_.arc_steps && (p->steps + p->rejected) * cube < MOST_ARC_WORK) {
+    while (p->steps + p->rejected < limits_.arc_steps && (p->steps + p->rejected) * cube < limits_.arc_work) {
       if (a.place - mark.place >= FARTHEST) {
         p->unbounded = std::fabs(a.sigma - mark.sigma) * arc.speed() < STANDING;
         if (p->unbounded) return;
@@ -165,8 +164,12 @@ class Walker {
         continue;
       }
       p->nodes.push_back(b);
-      // a step of twice what the path's own steps are refused at: they can go on
-      if (b.sigma >= until_ || std::fmin(b.rate, a.rate) * arc.speed() * h >= 2.0 * limits_.narrow) {
+      // a step of twice what the path's own steps are refused at: they can go on. Behind a branch point of many loops those
+      // of the arc are shorter, as they are of one matrix, and the path's ask each loop by itself
+      const double pace = std::fmin(b.rate, a.rate) * arc.speed();
+      const bool asks_blocks = !p->crossings.empty() && rows > MANY_EQUATIONS && pace > 0.0;
+      if (b.sigma >= until_ || pace * h >= 2.0 * limits_.narrow ||
+          (asks_blocks && pace * arc.step_of_blocks(a, b) >= 2.0 * limits_.narrow)) {
         p->end = PassageEnd::through;
         return;
       }

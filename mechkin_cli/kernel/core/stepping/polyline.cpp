@@ -256,7 +256,8 @@ class RowFollower {
     result_.end = missed ? TrackEnd::stalled : track.end;
     result_.steps += track.steps, result_.rejected += track.rejected;
     result_.reached = first + 1 + track.reached;
-    result_.limit = track.limit;
+    // only what stops a track has a limit, whose nodes take long to copy
+    if (track.limit.kind != PassageEnd::lost) result_.limit = track.limit;
     if (track.end == TrackEnd::start_not_closed)
       result_.inputs = origin;
     else

@@ -33,9 +33,16 @@ std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit)
   return turns;
 }
 
-std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit) {
-  int slot = 0;
-  for (const ClosingTurn& t : closing_turns(plan, unit)) slot += t.width;
+int slots_of(const std::vector<ClosingTurn>& turns) {
+  int slots = 0;
+  for (const ClosingTurn& t : turns) slots += t.width;
+  return slots;
+}
+
+namespace {
+
+// Those from a slot on.
+std::vector<TreeTurn> tree_turns_from(const Plan& plan, int slot) {
   std::vector<TreeTurn> turns;
   for (int k = 0; k < plan.links; ++k) {
     const TreeJoint& j = plan.joints[k];
@@ -44,16 +51,21 @@ std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit) {
   return turns;
 }
 
+}  // namespace
+
+std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit) {
+  return tree_turns_from(plan, slots_of(closing_turns(plan, unit)));
+}
+
 int turn_slots(const Plan& plan, const KernelUnit& unit) {
-  int slots = (int)tree_turns(plan, unit).size();
-  for (const ClosingTurn& t : closing_turns(plan, unit)) slots += t.width;
-  return slots;
+  const int slots = slots_of(closing_turns(plan, unit));
+  return slots + (int)tree_turns_from(plan, slots).size();
 }
 
 Stepper::Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits)
     : path_(path), plan_(path.plan(0.0)), unit_(unit), limits_(limits), memory_(unit.workspace_size(plan_)),
-      turns_(closing_turns(plan_, unit)), tree_turns_(::tree_turns(plan_, unit)),
-      turn_of_state_(plan_.states, -1), turn_slots_(::turn_slots(plan_, unit)) {
+      turns_(closing_turns(plan_, unit)), tree_turns_(tree_turns_from(plan_, slots_of(turns_))),
+      turn_of_state_(plan_.states, -1), turn_slots_(slots_of(turns_) + (int)tree_turns_.size()) {
   for (const TreeTurn& t : tree_turns_) turn_of_state_[t.state] = t.slot;
   unit.prepare(plan_, memory_.data());
   for (int b = 0; b < plan_.blocks; ++b) entries_ += plan_.block[b].rows * plan_.block[b].size;

@@ -26,7 +26,8 @@ struct StepLimits {
   double arc_pivot;     // the same of the matrix by arclength, whose derivatives are used to tell a dead centre
   double radius;        // largest spectral radius of J_a^+ J_b - I over a step, and to its middle
   double narrow;        // step (rad, length units of the inputs) below which a refusal is looked into by arclength
-  int arc_steps;        // at most in one such look
+  int arc_steps;        // attempts of steps in one such look, at most
+  double arc_work;      // likewise their product with the cube of the equations that are walked together
   bool straight;        // whether a branch point is passed along the smooth continuation
   int iterations;
   double same_line;     // distance from a straight line, in parts of the inputs, up to which rows lie on it
@@ -247,6 +248,7 @@ std::vector<char> upstream_blocks(const Plan& plan, const KernelUnit& unit);
 
 // The closing joints' angles and orientations of a plan, in the order of the joints.
 std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit);
+int slots_of(const std::vector<ClosingTurn>& turns);
 // The unknown angles of the tree's R and C; their slots follow those of the closing joints.
 std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit);
 // Numbers of a node's turns.

@@ -189,17 +189,17 @@ Result<TapeStore> tape_of(TapeValues& values) {
 }
 
 // The limits of a step in the order of their struct; counts and truths are numbers, too.
-constexpr std::size_t STEP_LIMITS = 26;
+constexpr std::size_t STEP_LIMITS = 27;
 
 Refusal read_limits(const Numbers& from, StepLimits* to) {
-  REQUIRE(from.size() == STEP_LIMITS, "there are 26 limits of steps");
+  REQUIRE(from.size() == STEP_LIMITS, "there are 27 limits of steps");
   for (const double number : from) REQUIRE(number >= -1.0 && number <= 1e15, "a limit of steps is a number from -1 on");
   const double* at = from.data();
   for (double* one : {&to->turn_cosine, &to->turn, &to->bend, &to->jump, &to->infill, &to->longest_step, &to->least_step})
     *one = *at++;
   to->most_steps = (int)std::fmin(*at++, 1e6);
   for (double* one : {&to->tight, &to->coarse, &to->accept, &to->pivot, &to->arc_pivot, &to->radius, &to->narrow}) *one = *at++;
-  to->arc_steps = (int)std::fmin(*at++, 1e6), to->straight = *at++ != 0.0, to->iterations = (int)std::fmin(*at++, 1e4);
+  to->arc_steps = (int)std::fmin(*at++, 1e6), to->arc_work = *at++, to->straight = *at++ != 0.0, to->iterations = (int)std::fmin(*at++, 1e4);
   for (double* one : {&to->same_line, &to->knot, &to->corner_cosine, &to->stray, &to->angle_step, &to->angle_miss,
                       &to->angle_bend, &to->plan_step})
     *one = *at++;
