@@ -475,6 +475,76 @@ def test_wheels_whose_teeth_push_apart_and_lose_power() -> None:
         assert checked >= 4
 
 
+YOKE: dict[str, Any] = {
+    "format": 1,
+    "plane": "xy",
+    "units": {"angle": "rad"},
+    "links": {
+        "crank": {"mass": 2, "center_of_mass": [0.1, 0.1]},
+        "yoke": {"mass": 3, "center_of_mass": [0.3, 0.2]},
+    },
+    "joints": {
+        "O": {"type": "R", "links": ["ground", "crank"], "point": [0, 0]},
+        "P": {"type": "Ps", "links": ["yoke", "crank"], "point": [0.3, 0.2], "slot": [0, 1]},
+        "S": {"type": "P", "links": ["ground", "yoke"], "point": [0.3, 0.3], "axis": [1, 0.1]},
+    },
+    "loads": [
+        WEIGHT,
+        {"type": "spring", "joint": "S", "coordinate": "s", "stiffness": 150},
+        {"type": "friction", "joint": "O", "coefficient": 0.2, "radius": 0.03},
+        {"type": "friction", "joint": "P", "coefficient": 0.25},
+        {"type": "friction", "joint": "S", "coefficient": 0.15, "length": 0.4},
+    ],
+}
+GUIDED: dict[str, Any] = {
+    "format": 1,
+    "units": {"angle": "rad"},
+    "idle": "hold",
+    "links": {
+        "crank": {"mass": 1, "center_of_mass": [0.1, 0.1, 0.05]},
+        "rod": {"mass": 1, "center_of_mass": [0.5, 0.2, 0.1]},
+        "slider": {"mass": 2, "center_of_mass": [1.0, 0.1, 0.2]},
+    },
+    "joints": {
+        "O": {"type": "R", "links": ["ground", "crank"], "point": [0, 0, 0], "axis": [0.1, 0.2, 1]},
+        "B": {"type": "S", "links": ["crank", "rod"], "point": [0.3, 0.2, 0.1]},
+        "C": {"type": "S", "links": ["rod", "slider"], "point": [1.0, 0.1, 0.2]},
+        "S": {
+            "type": "P",
+            "links": ["ground", "slider"],
+            "point": [1.0, 0.1, 0.2],
+            "axis": [1, 0.1, 0.3],
+        },
+    },
+    "loads": [
+        {"type": "gravity", "g": [0, 0, -G]},
+        {"type": "spring", "joint": "S", "coordinate": "s", "stiffness": 80},
+        {
+            "type": "friction",
+            "joint": "O",
+            "coefficient": 0.2,
+            "radius": 0.03,
+            "length": 0.1,
+            "collar": 0.04,
+        },
+        {"type": "friction", "joint": "B", "coefficient": 0.2, "radius": 0.03},
+        {"type": "friction", "joint": "C", "coefficient": 0.2, "radius": 0.03},
+        {"type": "friction", "joint": "S", "coefficient": 0.15, "length": 0.3, "width": 0.2},
+    ],
+}
+
+
+@pytest.mark.parametrize("document", [YOKE, GUIDED], ids=["yoke", "guided"])
+def test_slots_balls_and_guides_against_slow_drives(document: dict[str, Any]) -> None:
+    r = mk.load(document).equilibrium(window={"O.theta": (-3.1, 3.1)})
+    assert len(r["O.theta"]) >= 4
+    for k, ends in enumerate(rests(r)):
+        near = {"assembly": {"near": {"S.s": float(r["S.s"][k])}}}
+        for end in ends:
+            at = float(r["O.theta"][k])
+            assert driven_effort(document | near, "O.theta", [at, end]) < 1e-10
+
+
 @pytest.mark.parametrize(("part", "locks"), [(1.01, True), (0.99, False)])
 def test_a_worm_locks_itself(part: float, locks: bool) -> None:
     """Where the coefficient is cos(pressure angle) tan(lead angle)."""
