@@ -142,4 +142,6 @@ def bends(found: Derivative, inertia: Floats) -> bool:
     """Whether what was differentiated bends or jumps at the place: its differences do not settle,
     however short they are, and are more than rounding beside an inertia in the same units."""
     size, least = (float(np.abs(each).max(initial=0.0)) for each in (found.matrix, inertia))
-    return not found.error <= max(tolerances.UNSETTLED * size, tolerances.NO_RATE * least)
+    settled = found.error <= max(tolerances.UNSETTLED * size, tolerances.NO_RATE * least)
+    # without inertia nothing vibrates
+    return least > 0.0 and not settled
