@@ -27,3 +27,11 @@ order leaves 1e-12 of a smooth frequency, and rounding 1e-11."""
 WELL_TOLD: Final = 8.0
 """Rates of joints, rad or length units for one of an input, up to which the inputs of a sweep tell
 its motion so well that steps along them do as well as such along the motion itself."""
+
+UNSETTLED: Final = 1e-3
+"""Difference of the orders six and eight of a derivative, in parts of its largest entry, above
+which forces bend or jump there: of a jump or an edge the shortest step still tells a tenth."""
+
+NO_RATE: Final = 1e-6
+"""Stiffness (1/s^2) or damping (1/s) in parts of the inertia that is none: its motions take an
+hour. Rounding of forces that do not change leaves less."""

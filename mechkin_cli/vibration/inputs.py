@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import replace
 from mechkin_cli.session import Ask
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from mechkin_cli.show import Floats
+    from mechkin_cli.statics import Derivative
     from mechkin_cli.sweep import Result
 
 _FORCES = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
@@ -97,9 +99,9 @@ class InputForces:
         return np.asarray(self.at(none, none, none).forces[:, 0])
 
     @cached_property
-    def matrices(self) -> tuple[Floats, Floats, Floats]:
-        """Stiffness, damping and inertia (free, free), SI."""
-        n, units = len(self.free), self.units
+    def _derivatives(self) -> tuple[Derivative, ...]:
+        """Of the efforts by the inputs, and by their rates where loads read some or others move."""
+        n = len(self.free)
         loads = self.session.problem.mechanism.loads
 
         def moved(u: Floats) -> ForcesAt:
@@ -108,12 +110,38 @@ class InputForces:
         def rated(rates: Floats) -> ForcesAt:
             return self.at(np.zeros_like(rates), rates, np.zeros_like(rates))
 
-        stiffness = differentiated(moved, n).matrix / units
-        damping = np.zeros((n, n))
+        stiffness = differentiated(moved, n)
         if self.moves or any(load.reads_rates for load in loads):
-            damping = differentiated(rated, n).matrix / units
+            return stiffness, differentiated(rated, n)
+        return (stiffness,)
+
+    @cached_property
+    def _inertia(self) -> Floats:
+        """Efforts (free, free) by accelerations of the inputs."""
+        n = len(self.free)
         none = np.zeros((n, n + 1))
         unit = np.concatenate([np.zeros((n, 1)), np.eye(n)], axis=1)
         found = self.at(none, none, unit).forces
-        inertia = (found[:, 1:] - found[:, :1]) / units
+        return np.asarray(found[:, 1:] - found[:, :1])
+
+    @property
+    def bends(self) -> bool:
+        """Whether loads bend or jump in the row, as `SmallMotions.bends`."""
+        return any(bends(found, self._inertia) for found in self._derivatives)
+
+    @cached_property
+    def matrices(self) -> tuple[Floats, Floats, Floats]:
+        """Stiffness, damping and inertia (free, free), SI."""
+        stiffness, *others = (found.matrix / self.units for found in self._derivatives)
+        damping = others[0] if others else np.zeros_like(stiffness)
+        inertia = self._inertia / self.units
         return stiffness, damping, 0.5 * (inertia + inertia.T)
+
+
+def bends(found: Derivative, inertia: Floats) -> bool:
+    """Whether what was differentiated bends or jumps at the place: its differences do not settle,
+    however short they are, and are more than rounding beside an inertia in the same units."""
+    size, least = (float(np.abs(each).max(initial=0.0)) for each in (found.matrix, inertia))
+    settled = found.error <= max(tolerances.UNSETTLED * size, tolerances.NO_RATE * least)
+    # without inertia nothing vibrates
+    return least > 0.0 and not settled

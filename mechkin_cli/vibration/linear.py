@@ -29,10 +29,12 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import Quantity, Vector
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, is_angle
+from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import continuous_angle
 from mechkin_cli.statics import DrivenAt, Forces, ForcesAt, FreePlace, differentiated, summed
 from mechkin_cli.vibration.arithmetic import inverse, solved, times, turned
+from mechkin_cli.vibration.inputs import bends
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
     from mechkin_cli.plan import Readout
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.statics import Derivative
     from mechkin_cli.vibration.inputs import InputForces
 
 
@@ -239,6 +242,27 @@ class SmallMotions:
 
         return differentiated(displaced, self.forces.freedoms).matrix
 
+    @property
+    def bends(self) -> bool:
+        """Whether loads bend or jump at the place, so that the differences that stiffness and
+        damping are taken from do not settle; not told where drives move it along other
+        coordinates."""
+        if self._inputs is not None:
+            return self._inputs.bends
+        if self.moves:
+            return False
+        inertia = self.forces.inertia(self.place)
+        return any(bends(found, inertia) for found in self._derivatives)
+
+    @cached_property
+    def _derivatives(self) -> tuple[Derivative, ...]:
+        """Of the forces along the chart by its displacements, and by its rates where loads read
+        some."""
+        found = [self.forces.stiffness(self.place)]
+        if any(load.reads_rates for load in self.session.problem.mechanism.loads):
+            found.append(self.forces.damping(self.place))
+        return tuple(found)
+
     @cached_property
     def matrices(self) -> tuple[Floats, Floats, Floats]:
         """K, C, M (freedoms, freedoms)."""
@@ -247,16 +271,14 @@ class SmallMotions:
         if self.moves:
             stiffness, damping, inertia = self.derivatives(self._along)
             return stiffness, damping, 0.5 * (inertia + inertia.T)
-        forces, place = self.forces, self.place
-        along = forces.stiffness(place).matrix
+        along = self._derivatives[0].matrix
         stiffest = self.energy * float(np.abs(along).max(initial=0.0))
         if np.abs(self._pushes).max() > tolerances.NO_BEND * stiffest:
             along = along - self._bend() / self.energy
-        loads = forces.session.problem.mechanism.loads
         damping = np.zeros_like(along)
-        if any(load.reads_rates for load in loads):
-            damping = forces.damping(place).matrix
-        inertia = forces.inertia(place)
+        if len(self._derivatives) > 1:
+            damping = self._derivatives[1].matrix
+        inertia = self.forces.inertia(self.place)
         named = (
             self.energy * times(self.inverse.T, times(matrix, self.inverse))
             for matrix in (along, damping, 0.5 * (inertia + inertia.T))
@@ -331,6 +353,8 @@ class SmallMotions:
                 raise UsageError(
                     f"{one.name} is not known beside a row; ask for what it follows from"
                 )
+            if demand_of(problem.mechanism, [one]) & Demand.JERK:
+                raise UsageError(f"{one.name} is a jerk, which small motions do not have")
         readout = self.session.readout(wanted)
         before: dict[str, Floats] = {}
 

@@ -152,7 +152,15 @@ def _turns(result: Result, row: int, free: Session) -> Floats:
     found = np.zeros(turn_count(free.plan))
     own = {(c, f): slot for c, f, slot, _ in _kernel.closing_turns(session.plan)}
     for closing, freedom, slot, width in _kernel.closing_turns(free.plan):
-        first = own[closing, freedom]
+        first = own.get((closing, freedom))
+        if first is None and width > 1:
+            # an orientation that the drives tell part of: either sign of it will do
+            continue
+        if first is None:
+            raise UsageError(
+                "the turns of some joint are not known in this row; name a response or equilibria, "
+                "or hold other inputs"
+            )
         found[slot : slot + width] = turns[first : first + width]
     states = dict(_kernel.tree_turns(session.plan))
     for number, (edge, freedom) in enumerate(session.graph.inputs):

@@ -464,6 +464,10 @@ class Vibration(Listed):
             text = "friction is left out of small motions: it does not go with small rates"
             hint = "add dampers for what it takes"
             found.append(Diagnostic("friction-left-out", "note", text, None, hint=hint))
+        if self._small.bends:
+            text = "loads bend or jump at this place, so stiffness or damping is not what it says"
+            hint = "write laws that are smooth where the mechanism stands or rests"
+            found.append(Diagnostic("bent-loads", "warning", text, None, hint=hint))
         if not self._freed.motions.is_balanced:
             efforts = ", ".join(
                 f"{float(x):.4g} {'N*m' if unit == 'rad' else 'N'} at {name}"

@@ -37,6 +37,8 @@ def test_what_inputs_and_outputs_are_refused() -> None:
             v.state_space(inputs, outputs)
     with pytest.raises(UsageError, match="not known beside a row"):
         v.state_space(["pose.x"], ["row.condition"])
+    with pytest.raises(UsageError, match="is a jerk"):
+        v.state_space(["pose.x"], ["sump.jerk"])
     with pytest.raises(UsageError, match="no parameter"):
         v.sensitivity("stiff")
 
@@ -66,3 +68,22 @@ motion: {inputs: {A.theta: {at: 0}}}
     assert v.stiffness[0, 0] == pytest.approx(3.0)
     with pytest.raises(UsageError, match=r"A\.theta has no inertia"):
         _ = v.frequencies
+
+
+@pytest.mark.parametrize("coordinates", [None, ["B.theta", "A.theta"]])
+def test_loads_that_jump_with_a_rate_are_told(coordinates: list[str] | None) -> None:
+    text = """format: 1
+plane: xy
+units: {length: m, force: N, angle: rad}
+links: {a: {mass: 1, center_of_mass: [0, -1]}, b: {mass: 1, center_of_mass: [0, -2]}}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [a, b], point: [0, -1]}
+loads:
+  - {type: gravity, g: [0, -9.81]}
+  - {type: torque, joint: A, value: LAW}
+motion: {inputs: {A.theta: {at: 0}, B.theta: {at: 0}}}
+"""
+    for law, told in (('"-2 N*m*sign(A.theta_dot)"', True), ('"-2 N*m*s/rad*A.theta_dot"', False)):
+        v = mk.loads(text.replace("LAW", law)).vibration(coordinates=coordinates)
+        assert any(one.code == "bent-loads" for one in v.diagnostics) == told

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -83,3 +84,11 @@ def test_other_coordinates_of_the_loop() -> None:
         other = model.vibration(row=1, coordinates=[name])
         assert other.frequencies == pytest.approx(one.frequencies, rel=1e-10), name
         assert other.damping_ratios == pytest.approx(one.damping_ratios, rel=1e-9), name
+
+
+def test_a_body_on_cables_is_as_heavy_as_it_is() -> None:
+    """Its winches are actuators: what holds it along its own coordinates is its weight."""
+    file = Path(__file__).parents[2] / "mechanisms" / "couplings" / "cable_robot.yaml"
+    v = mk.load(file).vibration("sweep", row=4)
+    assert v.mass == pytest.approx(5.0 * np.eye(3), abs=1e-11)
+    assert v.holding == pytest.approx([0.0, 0.0, 5.0 * 9.81], abs=1e-10)
