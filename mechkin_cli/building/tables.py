@@ -244,8 +244,11 @@ def used_quantities(tables: Sequence[TableLayout], quantities: Mapping[str, Want
     for table in tables:
         for column in table.columns:
             for name in sorted(column.expression.names):
+                # of components the vector; what comes first is not asked for the other
                 candidates = (name, name.rpartition(".")[0])
-                used |= dict.fromkeys([each for each in candidates if each in quantities][:1])
+                known = next((each for each in candidates if each in quantities), None)
+                if known is not None:
+                    used[known] = None
     return list(used)
 
 

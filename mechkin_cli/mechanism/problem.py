@@ -228,10 +228,11 @@ class Problem:
     def _elements(self) -> ElementsByName:
         return ElementsByName(self.mechanism)
 
-    def _quantities_of(self, word: str | None) -> Mapping[str, Wanted]:
-        """Those whose names have this first word; None: all."""
+    def _quantities_of(self, word: str | None, coefficients: bool = True) -> Mapping[str, Wanted]:
+        """Those whose names have this first word; None: all. Without `coefficients`: those that are
+        no coefficients of others."""
         elements = Elements.of(self.mechanism) if word is None else self._elements(word)
-        tied, found = self.tied, self._untied_quantities(elements)
+        tied, found = self.tied, self._untied_quantities(elements, coefficients)
         if not tied:
             return found
         return {
@@ -240,7 +241,7 @@ class Problem:
             if known.owner not in tied or known.kind not in _REACTIONS
         }
 
-    def _untied_quantities(self, elements: Elements) -> Mapping[str, Wanted]:
+    def _untied_quantities(self, elements: Elements, coefficients: bool) -> Mapping[str, Wanted]:
         motion = self.motion
         if self.response is not None:
             efforts = self.response.efforts_of
@@ -257,7 +258,7 @@ class Problem:
             linear = self._linear(found)
             linear = {name: known for name, known in linear.items() if known.kind != "effort"}
             moving = [*self.response.independent, *self.response.driven_at]
-            if moving:
+            if moving and coefficients:
                 found |= coefficient_catalogue(linear, moving, moving[0])
             own = response_quantities()
             if self.response.search is not None:
@@ -266,7 +267,7 @@ class Problem:
             return found | {name: known for name, known in derived.items() if known.order < 3}
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(elements, self.acting, timed=motion.time is not None, held=self.held)
-        if leading is not None:
+        if leading is not None and coefficients:
             found |= coefficient_catalogue(self._linear(found), motion.driven, leading)
         if motion.time is not None and leading is not None:
             found |= ledger_catalogue()

@@ -180,13 +180,16 @@ def _by_word(some: Iterable[T], name: Callable[[T], str]) -> dict[str, list[T]]:
 
 
 class Catalogue(Mapping[str, Wanted]):
-    """Quantities by name, which are made when they are asked for: those of one first word, or all.
+    """Quantities by name, which are made when they are asked for: those of one first word, first
+    without and then with coefficients, or all.
 
-    A mechanism of a thousand loops has a hundred thousand quantities, of which a run reads a few.
+    A mechanism of a thousand loops has a hundred thousand quantities, of which a run reads a few;
+    most are coefficients.
     """
 
-    def __init__(self, of: Callable[[str | None], Mapping[str, Wanted]]) -> None:
+    def __init__(self, of: Callable[[str | None, bool], Mapping[str, Wanted]]) -> None:
         self._of = of
+        self._plain: dict[str, Mapping[str, Wanted]] = {}
         self._own: dict[str, Mapping[str, Wanted]] = {}
         self._every: Mapping[str, Wanted] | None = None
 
@@ -194,8 +197,12 @@ class Catalogue(Mapping[str, Wanted]):
         if self._every is not None:
             return self._every[name]
         word = name.partition(".")[0]
+        if word not in self._plain:
+            self._plain[word] = self._of(word, False)
+        if name in self._plain[word]:
+            return self._plain[word][name]
         if word not in self._own:
-            self._own[word] = self._of(word)
+            self._own[word] = self._of(word, True)
         return self._own[word][name]
 
     def __iter__(self) -> Iterator[str]:
@@ -207,12 +214,12 @@ class Catalogue(Mapping[str, Wanted]):
     @property
     def made(self) -> set[str]:
         """The first words of those made so far one by one."""
-        return {word for word, own in self._own.items() if own}
+        return {word for some in (self._plain, self._own) for word, own in some.items() if own}
 
     @property
     def _all(self) -> Mapping[str, Wanted]:
         if self._every is None:
-            self._every = self._of(None)
+            self._every = self._of(None, True)
         return self._every
 
 
