@@ -91,7 +91,6 @@ class Curve:
         # values (places,), rising, states and turns of each branch in a cell
         self.places: list[tuple[Floats, Floats, Floats]] = []
         self.incomplete = 0.0
-        self.largest = 0.0
 
     def look(self) -> None:
         """Looks at all that is found of the curve within the window."""
@@ -308,7 +307,6 @@ class Curve:
         found = self.statics.forces(inputs, states, turns, times)
         forces = np.where(found.good, found.forces[0], np.nan)
         largest = self.statics.largest_at(inputs, states, turns, times)
-        self.largest = max(self.largest, float(largest.max(initial=0.0)))
         return _Stretch(values, found.states, turns, forces, largest, fold, is_whole)
 
     def _place(self, one: _Stretch, k: int) -> Place:
@@ -318,7 +316,7 @@ class Curve:
     def _look_along(self, one: _Stretch) -> None:
         """Zeros of the force along a stretch."""
         forces, values = one.forces, one.values
-        zero = self._is_zero(forces)
+        zero = _is_zero(forces, one.largest)
         taken = self._take_motions(one, zero)
         for k in range(forces.size - 1):
             if taken[k]:
@@ -394,21 +392,14 @@ class Curve:
             way = self.statics.way(self._inputs(np.array([one.values[inside], middle])), place)
             if way.reached < 2:
                 break
-            found = self.statics.forces(
-                self._inputs(np.array([middle])),
-                way.states[:, 1:],
-                way.turns[:, 1:],
-                np.array([self.time]),
-            )
-            if found.good.all() and self._is_zero(found.forces)[0, 0]:
+            at = self._inputs(np.array([middle])), way.states[:, 1:], way.turns[:, 1:]
+            time = np.array([self.time])
+            found, largest = self.statics.forces(*at, time), self.statics.largest_at(*at, time)
+            if found.good.all() and _is_zero(found.forces[0], largest)[0]:
                 still = middle
             else:
                 not_now = middle
         return still
-
-    def _is_zero(self, forces: Floats) -> Bools:
-        zero: Bools = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * self.largest
-        return zero
 
     def _settle_motions(self) -> None:
         """One equilibrium for each motion along which the loads balance, in place of all that were
@@ -553,3 +544,10 @@ class Curve:
             )
             at = f"{self.ended} ended within the window, {self.between} of them at unknown circuits"
         return Diagnostic("window-circuits", "note", text, response.place, at)
+
+
+def _is_zero(forces: Floats, largest: Floats) -> Bools:
+    """Where forces (places,) are rounding of what balances there: elsewhere loads may be huge, as
+    on a branch that runs to infinity."""
+    zero: Bools = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * largest
+    return zero

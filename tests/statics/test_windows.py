@@ -310,3 +310,43 @@ loads:
     at = dict(zip(np.round(e["B.theta"], 6).tolist(), e["row.event"], strict=True))
     assert sorted(at) == [-180, 0]
     assert at[0].startswith("indifferent")
+
+
+def test_a_branch_to_infinity_hides_no_forces() -> None:
+    # a yoke runs away where its slot lies along its guide: the spring's force grows beyond bounds
+    text = """
+format: 1
+plane: xy
+units: {angle: rad}
+links:
+  crank: {mass: 2, center_of_mass: [0.1, 0.1]}
+  yoke: {mass: 3, center_of_mass: [0.3, 0.2]}
+joints:
+  O: {type: R, links: [ground, crank], point: [0, 0]}
+  P: {type: Ps, links: [yoke, crank], point: [0.3, 0.2], slot: [0, 1]}
+  S: {type: P, links: [ground, yoke], point: [0.3, 0.3], axis: [1, 0.1]}
+loads:
+  - {type: gravity, g: [0, -9.81]}
+  - {type: spring, joint: S, coordinate: s, stiffness: 150}
+"""
+    e = mk.loads(text).equilibrium(["O.theta"], window={"O.theta": (-3.1, 3.1)})
+    assert "indifferent" not in told(e)
+
+    # the slot is a line of the crank 0.3 from O, on which the yoke's pin stays
+    axis = np.array([1, 0.1]) / hypot(1, 0.1)
+
+    def slide(turn: float) -> float:
+        off = 0.3 - 0.3 * cos(turn) - 0.2 * sin(turn)
+        return float(off / (axis[0] * cos(turn) + axis[1] * sin(turn)))
+
+    def energy(turn: float) -> float:
+        s = slide(turn)
+        height = hypot(0.1, 0.1) * sin(pi / 4 + turn)
+        return 2 * G * height + 3 * G * s * axis[1] + 75 * s * s
+
+    def moment(turn: float) -> float:
+        return (energy(turn + 1e-6) - energy(turn - 1e-6)) / 2e-6
+
+    # at the poles of the slide the moment changes its sign, too
+    found = [at for at in roots(moment, -3.1, 3.1) if abs(slide(at)) < 1e3]
+    np.testing.assert_allclose(np.sort(e["O.theta"]), found, atol=1e-6)
