@@ -57,7 +57,7 @@ def resting(
         paths=(),
         unrated=(),
         constraint_rates=None,
-        rest=Rest(free, motion.course),
+        rest=Rest(free, tuple(taken[len(motion.inputs) :]), motion.course),
     )
 
 

@@ -173,17 +173,24 @@ class Span(NamedTuple):
 
 class Rest(NamedTuple):
     """Which inputs of a sweep nothing drives, by number: in each row they are where the loads
-    balance. `course`: that of the others, where they move by laws or follow others. `solved`: the
-    rows' values are those; then the rows from `first` to `last` have one, and the `ends` say with
-    which status and words the others have none."""
+    balance. `names`: those of the file (joint, coordinate), which may be others. `course`: that of
+    the driven inputs, where they move by laws or follow others. `solved`: the rows' values are
+    those; then the rows from `first` to `last` have one, and the `ends` say with which status and
+    words the others have none."""
 
     inputs: tuple[int, ...]
+    names: tuple[tuple[str, str], ...] = ()
     course: Course | None = None
     solved: bool = False
     first: int = 0
     last: int = 0
     ends: tuple[tuple[Status, Diagnostic], ...] = ()
     notes: tuple[Diagnostic, ...] = ()
+
+    @property
+    def rows(self) -> int:
+        """How many rows have an equilibrium."""
+        return self.last + 1 - self.first
 
     def part(self, first: int, last: int) -> Rest:
         """That of the rows from `first` to `last`, both included."""

@@ -108,7 +108,7 @@ class Problem:
         if motion.rest is None:
             return acting
         free = [motion.driven[number] for number in motion.rest.inputs]
-        return [at for at in acting if at not in free]
+        return [at for at in acting if at not in free and at not in motion.rest.names]
 
     @cached_property
     def has_idle(self) -> bool:

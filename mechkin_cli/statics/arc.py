@@ -16,7 +16,7 @@ from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import input_number, input_text, input_unit
 from mechkin_cli.statics.forces import determinant, summed
-from mechkin_cli.statics.places import Place, Statics
+from mechkin_cli.statics.places import Instead, Place, Statics
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
 
@@ -37,6 +37,7 @@ class Followed(Protocol):
         values: all inputs (inputs, rows), kernel units.
         times: of the rows (rows,), s.
         crossings: places at which other branches cross, in words.
+        instead: what tells places apart where the coordinates at rest do not.
     """
 
     session: Session
@@ -45,6 +46,7 @@ class Followed(Protocol):
     values: Floats
     times: Floats
     crossings: list[str]
+    instead: Instead | None
 
     def lost(self, row: int, at: str | None = None, hint: str | None = None) -> End:
         """That the branch could not be followed beyond a row, to which place at most, and what may
@@ -143,7 +145,7 @@ class Arc:
         if found is None or not found.turns_back or not self._is_one(place, gone, going, found):
             return None
         # beside a dead centre of these coordinates slopes are differences over its other side
-        if self.statics.beside_dead_centre(place, self.start):
+        if self.statics.beside_dead_centre(place, self.start) is not None:
             return None
         begin, end = float(going.tangent[-1]), float(found.going.tangent[-1])
         part = begin / (begin - end)
@@ -232,12 +234,13 @@ class Arc:
 
     def _lost(self, place: Place, gone: float) -> End:
         """That the branch could not be followed beyond a place, and what may be done."""
-        others = self.statics.beside_dead_centre(place, self.start)
+        other = self.statics.beside_dead_centre(place, self.start)
         hint = None
-        if others:
+        if other is not None:
+            self.branch.instead = other
             hint = (
-                "the coordinates at rest come near a dead centre there; name others: rest: "
-                f"[{', '.join(others)}]"
+                "the coordinates at rest come near a dead centre there; name others under rest, as "
+                f"{'.'.join(other.name)}"
             )
         return self.branch.lost(self.row, self._words(place, gone), hint)
 

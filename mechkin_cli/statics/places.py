@@ -42,6 +42,15 @@ class Place(NamedTuple):
     turns: Floats
 
 
+class Instead(NamedTuple):
+    """A coordinate of the tree that takes the place of input `number`: (edge, freedom) and (joint,
+    coordinate)."""
+
+    number: int
+    at: tuple[int, int]
+    name: tuple[str, str]
+
+
 class Forced(NamedTuple):
     """Forces (free, places) in N*m by the kernel's unit of each coordinate, states (states, places)
     and which places closed and have forces."""
@@ -167,34 +176,29 @@ class Statics:
         turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
         return self.forces(inputs, states, turns, time)
 
-    def beside_dead_centre(self, place: Place, known: Place) -> list[str]:
-        """Names of coordinates that tell places apart about `place`, where the free ones stand near
-        a dead centre there, though not at a `known` place; none where they do not."""
+    def beside_dead_centre(self, place: Place, known: Place) -> Instead | None:
+        """What tells places apart about `place` where the free coordinates, which do so at a
+        `known` place, stand near a dead centre there; None where they do not."""
         session, layout = self.session, self.session.layout
         tangents = self.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
         sizes = np.sqrt(summed((tangents * tangents).T))
-        far = ~(sizes <= 1.0 / tolerances.NEAR_DEAD_CENTRE)
-        if not far.any():
-            return []
-        # what moves most there, in place of one of the free coordinates
+        if (sizes <= 1.0 / tolerances.NEAR_DEAD_CENTRE).all():
+            return None
+        # what moves most there, in place of the free coordinate that it moves with most before
         way = tangents[int(np.argmax(np.where(np.isfinite(sizes), sizes, -1.0)))]
+        unknown = {at for block in session.graph.blocks for at in block.unknowns}
         scalars = [
-            (layout.column(number, freedom), f"{edge.joint.name}.{name}")
+            (abs(float(way[layout.column(number, freedom)])), (number, freedom), name)
             for number, edge in enumerate(session.graph.edges)
-            if not edge.hung
             for name, freedom in edge.joint.type.scalars.items()
+            if (number, freedom) in unknown
         ]
-        moved, name = max(scalars, key=lambda scalar: abs(float(way[scalar[0]])))
-        columns = [layout.column(*session.graph.inputs[k]) for k in self.free]
-        if moved in columns:
-            return []
+        if not scalars:
+            return None
+        _, at, name = max(scalars)
         before = self.tangents(known.inputs[:, None], known.state[:, None])[:, :, 0]
-        # which of them: that which leaves the others most independent
-        replaced = int(np.argmax(np.abs(before[:, moved])))
-        named = [session.problem.motion.inputs[k] for k in self.free]
-        names = [f"{each.joint}.{each.coordinate}" for each in named]
-        names[replaced] = name
-        return names
+        number = self.free[int(np.argmax(np.abs(before[:, layout.column(*at)])))]
+        return Instead(number, at, (session.graph.edges[at[0]].joint.name, name))
 
     def place(self, inputs: Floats, state: Floats) -> Place:
         """A closed place at some inputs, to which nothing was followed."""

@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.mechanism import dimension_of
+from mechkin_cli.mechanism import DrivenInput, dimension_of
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Continued, input_unit
 from mechkin_cli.statics.arc import Arc, End
 from mechkin_cli.statics.newton import Balancing, search
-from mechkin_cli.statics.places import Place, Statics, eigen
+from mechkin_cli.statics.places import Instead, Place, Statics, eigen
 from mechkin_cli.statics.stretch import Places, Stretches
+from mechkin_cli.structure import exchanged
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.verdict import Status
@@ -43,13 +45,59 @@ def rested(session: Session) -> Session:
     if start.state is None:
         # the sweep says why there is no first assembly
         return _moved(session, rest._replace(solved=True), session.inputs.values)
-    found = _Branch(sized, rest).follow(start.row, start.state)
+    branch = _Branch(sized, rest)
+    found = branch.follow(start.row, start.state)
+    notes: tuple[Diagnostic, ...] = ()
+    for _ in range(tolerances.MOST_REST_EXCHANGES):
+        instead = branch.instead
+        if instead is None or found.start is None:
+            break
+        sized = _exchanged(sized, instead, found.start)
+        branch = _Branch(sized, rest)
+        assert found.start.state is not None
+        further = branch.follow(found.start.row, found.start.state)
+        if further.rest.rows < found.rest.rows:
+            break
+        if further.rest.rows == found.rest.rows and branch.instead is not None:
+            break
+        notes = (*notes, _exchange_note(session, instead))
+        session, found = _exchanged(session, instead, found.start), further
+    found = found._replace(rest=found.rest._replace(notes=(*notes, *found.rest.notes)))
     moved = _moved(session, found.rest, found.values)
     if found.start is None:
         return moved
     # the assembly that was chosen stands where the coordinates have not come to rest yet: chosen
     # where they have, it might be another
     return replace(moved, base=None, first=found.start._replace(chosen=start))
+
+
+def _exchanged(session: Session, instead: Instead, start: Continued) -> Session:
+    """The session in which another coordinate of the tree rests, from the place where it was
+    followed on."""
+    assert start.state is not None
+    other = session.exchanged(exchanged(session.graph, *instead))
+    problem, motion = session.problem, session.problem.motion
+    joint, coordinate = instead.name
+    inputs, still = list(motion.inputs), np.zeros(motion.rows)
+    orders = np.zeros((4, motion.rows))
+    item = DrivenInput(joint, coordinate, still, still, still, still, orders)
+    value = float(start.state[other.layout.state(*instead.at)])
+    in_si = value * input_unit(other.layout, item)
+    orders[0] = problem.units.from_si(in_si, dimension_of(coordinate))
+    inputs[instead.number] = item._replace(values=still + in_si, written_orders=orders)
+    motion = motion._replace(inputs=tuple(inputs), leader=motion.leading_number)
+    problem = replace(problem, motion=motion).with_quantities_of(problem)
+    return replace(other, problem=problem)
+
+
+def _exchange_note(session: Session, instead: Instead) -> Diagnostic:
+    """That another coordinate took the place of one at rest."""
+    before = ".".join(session.problem.motion.driven[instead.number])
+    text = (
+        f"{before} comes near a dead centre of its own: {'.'.join(instead.name)} tells the "
+        "equilibria apart in its place"
+    )
+    return Diagnostic("rest-exchanged", "note", text)
 
 
 class _Rows(NamedTuple):
@@ -110,6 +158,7 @@ class _Branch:
         self.stretches = Stretches(self.statics, self.values, self.times)
         self.least = np.full(self.rows, np.nan)
         self.crossings: list[str] = []
+        self.instead: Instead | None = None
 
     def follow(self, row: int, state: Floats) -> _Rows:
         """All rows, from the equilibrium near an assembly at a row on."""

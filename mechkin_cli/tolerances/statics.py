@@ -236,6 +236,9 @@ NEAR_DEAD_CENTRE: Final = 0.05
 them are differences over `NEWTON_DIFFERENCE`, which have no values closer to one than that, where
 rates are its square root."""
 
+MOST_REST_EXCHANGES: Final = 4
+"""How often another coordinate takes the place of one at rest that comes to a dead centre."""
+
 FOLD_STEP: Final = 1e-5
 """Arclength within which a fold is located; its inputs are then right to the cube of that."""
 

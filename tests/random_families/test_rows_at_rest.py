@@ -159,3 +159,49 @@ motion:
     push = 4 * 10 * knee * (np.cos(angle) - 100 / knee) * np.sin(angle) / np.cos(angle)
     t = brentq(lambda t: 30 * t - 4 * (1 - np.cos(np.pi * t)) - push.max(), 0.85, 1.0)
     assert time == pytest.approx(t, abs=1e-8)
+
+
+def _five_bar(rng: random.Random) -> str:
+    points = [(0, 0), (-0.3, 0.5), (0.25, 1), (0.9, 0.6), (0.6, 0)]
+    moved = [tuple(round(x + rng.uniform(-0.12, 0.12), 2) for x in point) for point in points]
+    links = ["ground", "l1", "l2", "l3", "l4", "ground"]
+    text = "format: 1\nplane: xy\nunits: {length: m, angle: rad, force: N}\nlinks: {"
+    text += ", ".join(f"l{k}: {{}}" for k in range(1, 5)) + "}\njoints:\n"
+    for k, joint in enumerate("ABCDE"):
+        pair = f"[{links[k]}, {links[k + 1]}]" if joint != "E" else "[ground, l4]"
+        text += f"  {joint}: {{type: R, links: {pair}, point: {list(moved[k])}}}\n"
+    loads, marks = "", ""
+    for k in range(2):
+        far = [round(rng.uniform(-0.5, 1.5), 2), round(rng.uniform(0.2, 1.6), 2)]
+        link, at = rng.choice([("l3", (0.5, 0.8)), ("l4", (0.7, 0.4)), ("l2", (0, 0.8))])
+        marks += f"  p{k}: {{link: {link}, at: {list(at)}}}\n  q{k}: {{link: ground, at: {far}}}\n"
+        loads += (
+            f"  - {{type: spring, between: [p{k}, q{k}], stiffness: {rng.randint(100, 400)}, "
+            f"free: {round(rng.uniform(0.2, 0.9), 2)}}}\n"
+        )
+    for joint in "AE":
+        loads += f"  - {{type: spring, joint: {joint}, coordinate: theta, stiffness: 5}}\n"
+    push = [f"{rng.randint(-90, 90)} N/s*time" for _ in range(2)]
+    loads += f"  - {{type: force, link: l4, point: p9, force: [{push[0]}, {push[1]}]}}\n"
+    marks += "  p9: {link: l4, at: [0.7, 0.3]}\n"
+    return f"{text}points:\n{marks}loads:\n{loads}"
+
+
+@pytest.mark.parametrize("rng", [*cases(815, 15)])
+def test_rows_do_not_depend_on_which_coordinates_rest(rng: random.Random) -> None:
+    own = _five_bar(rng)
+    names = [f"{joint}.theta" for joint in "ABDE"]
+    found, lost = [], []
+    for pair in ("A.theta, E.theta", "A.theta, B.theta", "D.theta, E.theta"):
+        motion = f"motion: {{time: {{from: 0, to: 1.5, count: 16}}, rest: [{pair}]}}\n"
+        r = mk.loads(own + motion).analyze(names)
+        found.append(np.array([r[name] for name in names]))
+        lost.append(any(one.code == "rest-lost" for one in r.diagnostics))
+    for other, other_lost in zip(found[1:], lost[1:], strict=True):
+        turns = np.round((other - found[0]) / (2 * np.pi)) * 2 * np.pi
+        off = np.abs(other - turns - found[0])
+        if not off[:, 0].max() < 1e-7:
+            continue  # the search for the first equilibrium ended at another
+        if not (lost[0] or other_lost):
+            np.testing.assert_array_equal(np.isfinite(other), np.isfinite(found[0]))
+        assert np.nanmax(off) < 1e-7
