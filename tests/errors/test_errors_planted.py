@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.errors import response as repeated_runs
+from mechkin_cli.errors import errors as repeated_runs
 from mechkin_cli.expressions.quantity import Quantity
 from mechkin_cli.tape.double_double import DoubleDoubles, exactly
 
