@@ -140,19 +140,20 @@ class Arc:
 
     def _folded(self, place: Place, gone: float, going: _Going) -> End:
         """Where the branch turns back within a short step, and that it does; None where it does
-        not. The rate of the inputs goes through zero evenly there."""
+        not."""
         found = self._step(place, gone, going, tolerances.FOLD_STEP)
         if found is None or not found.turns_back or not self._is_one(place, gone, going, found):
             return None
         # beside a dead centre of these coordinates slopes are differences over its other side
         if self.statics.beside_dead_centre(place, self.start) is not None:
             return None
-        begin, end = float(going.tangent[-1]), float(found.going.tangent[-1])
-        part = begin / (begin - end)
         here = self._y(place, gone)
         way = self._y(found.place, found.gone) - here
+        length = sqrt(float(summed(way * way)))
+        begin, end = (length * float(one.tangent[-1]) for one in (going, found.going))
+        part, further = _summit(begin, end, found.gone - gone)
         inputs, _ = self._at(here + part * way)
-        gone += 0.5 * part * begin * sqrt(float(summed(way * way)))
+        gone += further
         return self._fold(place._replace(inputs=inputs), gone)
 
     def _step(self, place: Place, gone: float, going: _Going, step: float) -> _Onward | None:
@@ -302,8 +303,11 @@ class Arc:
         count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
         steps = np.zeros((place.inputs.size, 2 * count + 3))
         times = np.full(2 * count + 3, self._time(gone))
+        # as far as the mechanism moves, which is much beside a dead centre
+        tangents = self.statics.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
+        sizes = np.maximum(np.sqrt(summed((tangents * tangents).T)), 1.0)
         for number, k in enumerate(self.free):
-            steps[k, 2 * number], steps[k, 2 * number + 1] = h, -h
+            steps[k, 2 * number : 2 * number + 2] = np.array([h, -h]) / sizes[number]
         here, onward = self._inputs(gone), h * self.scale
         for by, column in ((onward, 2 * count), (-onward, 2 * count + 1)):
             steps[:, column] = self._inputs(gone + by) - here
@@ -312,6 +316,7 @@ class Arc:
         if not found.good.all():
             return None
         changes = (found.forces[:, :-1:2] - found.forces[:, 1:-1:2]) / (2.0 * h)
+        changes[:, :-1] *= sizes
         changes[:, -1] /= self.scale
         return found.forces[:, -1], changes
 
@@ -382,6 +387,17 @@ def _route(session: Session) -> Route | None:
     count = len(motion.rest.course.values)
     units = [input_unit(session.layout, item) for item in motion.inputs[:count]]
     return Route(motion.rest.course, session.inputs.values[:count], np.array(units))
+
+
+def _summit(begin: float, end: float, rise: float) -> tuple[float, float]:
+    """Where between 0 and 1 a curve of third degree is highest, and how high, that begins at 0 with
+    the slope `begin` > 0 and ends at `rise` with the slope `end` <= 0."""
+    square, cube = 3.0 * rise - 2.0 * begin - end, begin + end - 2.0 * rise
+    root = square * square - 3.0 * begin * cube
+    at = begin / (sqrt(root) - square) if root >= 0.0 and sqrt(root) > square else 1.0
+    if not at < 1.0:
+        at = begin / (begin - end)
+    return at, at * (begin + at * (square + at * cube))
 
 
 def _between(one: _Going, other: _Going) -> Floats:
