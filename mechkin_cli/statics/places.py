@@ -176,13 +176,16 @@ class Statics:
         turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
         return self.forces(inputs, states, turns, time)
 
-    def beside_dead_centre(self, place: Place, known: Place) -> Instead | None:
+    def beside_dead_centre(
+        self, place: Place, known: Place, *, surely: bool = False
+    ) -> Instead | None:
         """What tells places apart about `place` where the free coordinates, which do so at a
-        `known` place, stand near a dead centre there; None where they do not."""
+        `known` place, stand near a dead centre there; None where they do not, unless they `surely`
+        do."""
         session, layout = self.session, self.session.layout
         tangents = self.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
         sizes = np.sqrt(summed((tangents * tangents).T))
-        if (sizes <= 1.0 / tolerances.NEAR_DEAD_CENTRE).all():
+        if not surely and (sizes <= 1.0 / tolerances.NEAR_DEAD_CENTRE).all():
             return None
         # what moves most there, in place of the free coordinate that it moves with most before
         way = tangents[int(np.argmax(np.where(np.isfinite(sizes), sizes, -1.0)))]

@@ -16,6 +16,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import DrivenInput, dimension_of
 from mechkin_cli.memo import remembered
+from mechkin_cli.plan import TrackEnd
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Continued, input_unit
@@ -49,7 +50,7 @@ def rested(session: Session) -> Session:
     found = branch.follow(start.row, start.state)
     notes: tuple[Diagnostic, ...] = ()
     for _ in range(tolerances.MOST_REST_EXCHANGES):
-        instead = branch.instead
+        instead = branch.instead or (branch.arcs and _blocked(session, found)) or None
         if instead is None or found.start is None:
             break
         sized = _exchanged(sized, instead, found.start)
@@ -88,6 +89,22 @@ def _exchanged(session: Session, instead: Instead, start: Continued) -> Session:
     motion = motion._replace(inputs=tuple(inputs), leader=motion.leading_number)
     problem = replace(problem, motion=motion).with_quantities_of(problem)
     return replace(other, problem=problem)
+
+
+def _blocked(session: Session, found: _Rows) -> Instead | None:
+    """What tells places apart where the straight way from a row to the next, which the sweep goes
+    though the branch of equilibria does not, comes to a dead centre; None where it does not."""
+    start = found.start
+    if start is None or start.state is None or start.turns is None:
+        return None
+    moved = _moved(session, found.rest, found.values)
+    for step in (1, -1):
+        way = moved.follow_rows(start.state, start.row, step, turn=start.turns)
+        if way.end != TrackEnd.FINISHED and way.turn is not None:
+            known = Place(found.values[:, start.row], start.state, start.turns)
+            place = Place(way.inputs, way.state, way.turn)
+            return Statics(moved, found.rest.inputs).beside_dead_centre(place, known, surely=True)
+    return None
 
 
 def _exchange_note(session: Session, instead: Instead) -> Diagnostic:
@@ -159,6 +176,7 @@ class _Branch:
         self.least = np.full(self.rows, np.nan)
         self.crossings: list[str] = []
         self.instead: Instead | None = None
+        self.arcs = 0
 
     def follow(self, row: int, state: Floats) -> _Rows:
         """All rows, from the equilibrium near an assembly at a row on."""
@@ -211,6 +229,7 @@ class _Branch:
             at = known[-1]
             taken = self.stretches.onward(place, known, step)
             if taken is None:
+                self.arcs += 1
                 onward, end = Arc(self, place, at, at + step).follow()
                 if onward is None:
                     return at, end
