@@ -420,11 +420,20 @@ def _difference(forces: _Along, count: int, step: float) -> Derivative:
     return Derivative(matrix, float(np.abs(matrix - before).max(initial=0.0)))
 
 
+_MANY_TERMS = 12
+"""From so many terms on adding them one by one in Python takes longer."""
+
+
 def summed(terms: Floats) -> Floats:
     """Terms (terms, ...) added in their order, whatever the machine."""
     if not len(terms):
         return np.zeros(terms.shape[1:])
-    total: Floats = np.add.accumulate(terms, axis=0)[-1]
+    if len(terms) > _MANY_TERMS:
+        many: Floats = np.add.accumulate(terms, axis=0)[-1]
+        return many
+    total: Floats = np.array(terms[0])
+    for term in terms[1:]:
+        total = total + term
     return total
 
 

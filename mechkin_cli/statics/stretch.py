@@ -417,8 +417,10 @@ def _interpolated(points: Rows, numbers: Floats, rows: Rows) -> Floats:
     met = away == 0
     shares = weights[:, None] / np.where(met, 1.0, away)
     shares = np.where(met.any(axis=0), met, shares)
-    found = summed(numbers.T[:, :, None] * shares[:, None, :]) / summed(shares)
-    return np.asarray(found)
+    total = np.zeros((len(numbers), rows.size))
+    for point, share in zip(numbers.T, shares, strict=True):
+        total += point[:, None] * share
+    return np.asarray(total / summed(shares))
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats:
