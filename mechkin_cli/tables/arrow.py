@@ -130,7 +130,7 @@ class ArrowTable:
         # a dictionary of doubles is given up after a third of the time; bytes of the same place
         # side by side are packed to three quarters of the size
         return parquet.ParquetWriter(
-            file,
+            self._arrow.PythonFile(_KeptOpen(file), "w"),
             self._schema,
             compression="zstd",
             use_dictionary=[one.label for one in headings if one.kind == "text"],

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from io import RawIOBase
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -216,9 +217,10 @@ class TableWriter:
         kind, _, packing = format.partition(".")
         self.rows = 0
         self._heading, self._file = heading, file
-        self._packed = _Packed(packing, file) if packing else None
-        target: Any = self._packed or file
-        with refusal_of(self._file, lambda: self.rows):
+        self._gate = _Gate(file)
+        with self._writing():
+            self._packed = _Packed(packing, self._gate) if packing else None
+            target: Any = self._packed or self._gate
             self._table = _KINDS[kind](heading, target, style, room or TextRoom())
 
     def write(self, block: Block) -> None:
@@ -232,7 +234,7 @@ class TableWriter:
             _checked(one, column) for one, column in zip(self._heading.columns, block, strict=True)
         ]
         if columns and columns[0].rows:
-            with refusal_of(self._file, lambda: self.rows):
+            with self._writing():
                 self._table.write(columns)
             self.rows += columns[0].rows
             if isinstance(self._file, OutputFile):
@@ -244,10 +246,39 @@ class TableWriter:
         Raises:
             UsageError: as `write`.
         """
-        with refusal_of(self._file, lambda: self.rows):
+        with self._writing():
             self._table.end()
             if self._packed is not None:
                 self._packed.end()
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Inside, the file is written to."""
+        self._gate.is_open = True
+        try:
+            with refusal_of(self._file, lambda: self.rows):
+                yield
+        finally:
+            self._gate.is_open = False
+
+
+class _Gate(RawIOBase):
+    """A file that takes only what is written while its table is: what packs or frames a table that
+    is dropped before its end would write that end into a file that failed or is closed."""
+
+    def __init__(self, file: Sink) -> None:
+        self._file, self.is_open = file, False
+
+    def write(self, piece: Any) -> int:
+        """Adds bytes, or drops what nobody asked for."""
+        if not self.is_open:
+            return memoryview(piece).nbytes
+        return self._file.write(piece)
+
+    def flush(self) -> None:
+        """As `write`."""
+        if self.is_open:
+            self._file.flush()
 
 
 @contextmanager

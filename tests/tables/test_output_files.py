@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import gc
+import io
 import os
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.tables import (
     OutputFolder,
     TableStream,
+    TableWriter,
     file_set,
     folder as room,
     heading_of,
@@ -152,6 +154,22 @@ def test_a_full_disk_is_told_with_the_rows_that_were_written(
     assert int(rows) % 1000 == 0
     assert 0 < int(rows) < 200_000
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("format", STREAM_FORMATS)
+def test_a_table_that_is_dropped_writes_nothing_into_its_closed_file(
+    format: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyarrow")
+    said: list[object] = []
+    monkeypatch.setattr("sys.unraisablehook", said.append)
+    table, file = random_table(70_000), io.BytesIO()
+    writer = TableWriter(heading_of(table), format, file)
+    writer.write(table.columns)
+    file.close()
+    del writer
+    gc.collect()
+    assert [str(one) for one in said] == []
 
 
 def test_a_full_disk_is_told_of_a_small_file_with_its_rows(
