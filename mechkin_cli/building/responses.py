@@ -116,11 +116,13 @@ def build_start(
     path: Path,
     section: written.Response | written.Equilibrium,
     joints: Mapping[str, Joint],
+    window: Sequence[Limit] = (),
 ) -> tuple[StartValue, ...]:
     """The start of the run at `path`, in the order of the file; that of equilibria in a window is
     its middle."""
     key, texts = _started(section)
     path = (*path, key)
+    middles = {one.name: 0.5 * (one.low + one.high) for one in window}
     errors = fields.error_count
     values: dict[str, float] = {}
     rates: dict[str, float] = {}
@@ -140,8 +142,7 @@ def build_start(
             message = f"{other} and {name} are one freedom"
             fields.key_error("driven-twice", place, message, "start one of them")
         elif isinstance(text, written.CoordinateWindow):
-            low, high = _window(fields, place, text, coordinate)
-            values[name] = 0.5 * (low + high)
+            values[name] = middles[name]
         else:
             values[name] = fields.number(place, text, dimension_of(coordinate))
     if fields.error_count == errors:
@@ -372,10 +373,11 @@ class _ResponseBuilder:
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
         frictions = mechanism.frictions
         mechanism = replace(mechanism, frictions=())
+        window = self._windows(path, section)
         return ResponseProblem(
             name=name,
             place=fields.document.key_place(path),
-            start=build_start(fields, path, section, self.joints),
+            start=build_start(fields, path, section, self.joints, window),
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             driven=driven.inputs,
@@ -386,7 +388,7 @@ class _ResponseBuilder:
             fixed_step=None,
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
-            search=EquilibriumSearch(self._windows(path, section), section.starts or 0),
+            search=EquilibriumSearch(window, section.starts or 0),
             frictions=frictions,
         )
 

@@ -212,4 +212,33 @@ OTHER_WORDS = [
 ]
 """Words of other programs, each with what to write instead."""
 
-BAD_RESPONSES = [*START, *DRIVES, *ROWS, *STOPS, *RUNS, *OTHER_WORDS]
+
+def equilibrium(keys: str, code: str, *words: str) -> BadMechanism:
+    """The sound file with equilibria of some keys."""
+    return added(f"equilibria: {{rest: {{{keys}}}}}", code, *words)
+
+
+EQUILIBRIA = [
+    equilibrium("near: {»Q.theta: 20}", "unknown-coordinate", "Q.theta is not a coordinate"),
+    equilibrium("near: {O.theta: »20 mm}", "expression", "expected an angle", "length"),
+    equilibrium("window: {»Q.theta: {from: 0, to: 9}}", "unknown-coordinate", "Q.theta is not"),
+    equilibrium("window: {O.theta: {from: 9, to: »-9}}", "empty-window", "empty", "from:"),
+    equilibrium("window: {O.theta: {from: 9, to: »9}}", "empty-window", "empty", "from:"),
+    equilibrium("window: {O.theta: {from: »9 mm, to: 20}}", "expression", "expected an angle"),
+    equilibrium("window: {O.theta: {from: 0, to: »1e6}}", "wide-window", "limit 100"),
+    equilibrium(
+        "near: {O.theta: 2}, window: »{O.theta: {from: 0, to: 9}}", "two-choices", "keep one"
+    ),
+    equilibrium("window: {O.theta: {from: 0, to: 9}}, mode: »A", "two-choices", "remove mode"),
+    equilibrium("near: {O.theta: 2}, starts: »9", "starts-without-window", "add window"),
+    equilibrium(
+        "near: {»O.theta: 2}, driven: {O.theta: {at: 3}}", "start-and-drive", "no load decides"
+    ),
+    equilibrium("»start: {O.theta: 2}", "unknown-key", "near: {A.theta: 20}"),
+    equilibrium("near: {O.theta: 2}, time: »3 mm", "expression", "expected a time", "length"),
+    changed("step: 5}}}", "step: 5}}, rest: [»O.theta]}", "rest-and-input", "cannot rest"),
+    changed("step: 5}}}", "step: 5}}, rest: [»Q.s]}", "unknown-coordinate", "Q.s is not"),
+]
+"""Where loads balance."""
+
+BAD_RESPONSES = [*START, *DRIVES, *ROWS, *STOPS, *RUNS, *OTHER_WORDS, *EQUILIBRIA]
