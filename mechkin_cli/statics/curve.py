@@ -35,10 +35,6 @@ if TYPE_CHECKING:
     from mechkin_cli.statics.known import Known
 
 
-MOST_SPANS = 4
-"""Parts of a window in which the loads balance all along that are told one by one."""
-
-
 class _Stretch(NamedTuple):
     """A branch within a cell of the window: values (samples,), states, turns and forces there, the
     largest force of one load, and the dead centre at its end."""
@@ -505,9 +501,11 @@ class Curve:
         (low,), (high,) = self.known.ends
         spans = self.motions.spans(float(low), float(high))
         if spans:
-            told = [f"from {words(low)} to {words(high)}" for low, high in spans[:MOST_SPANS]]
-            if len(spans) > MOST_SPANS:
-                told.append(f"in {len(spans) - MOST_SPANS} more parts of the window")
+            told = [
+                f"from {words(low)} to {words(high)}" for low, high in spans[: tolerances.MOST_TOLD]
+            ]
+            if len(spans) > tolerances.MOST_TOLD:
+                told.append(f"in {len(spans) - tolerances.MOST_TOLD} more parts of the window")
             text = f"the loads balance all along {', '.join(told)}"
             notes.append(Diagnostic("indifferent", "note", text, response.place))
         if self.lost:

@@ -393,7 +393,7 @@ class FrictionRest:
             told[f"from {low} to {high}"] = None
         if not told:
             return []
-        shown = list(told)[: tolerances.MOST_REST_INTERVALS]
+        shown = list(told)[: tolerances.MOST_TOLD]
         more = len(told) - len(shown)
         shown += [f"in {more} more intervals"] if more else []
         text = f"{words} holds the mechanism {', and '.join(shown)}"

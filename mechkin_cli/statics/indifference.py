@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.record import NamedTuple
-from mechkin_cli.search import pose_keys, pose_number, same_poses
-from mechkin_cli.session import input_number, input_text
+from mechkin_cli.mechanism import eliminated
+from mechkin_cli.record import NamedTuple, dataclass
+from mechkin_cli.search import pose_keys, pose_number
+from mechkin_cli.session import input_number, input_text, turn_of
 from mechkin_cli.statics.forces import summed
 from mechkin_cli.statics.newton import search, slopes
 from mechkin_cli.statics.places import Place, eigen
@@ -24,7 +25,8 @@ from mechkin_cli.statics.places import Place, eigen
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from mechkin_cli.show import Floats
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.statics.forces import FreePlace
     from mechkin_cli.statics.newton import Balancing, Search
     from mechkin_cli.statics.places import Statics
 
@@ -156,19 +158,21 @@ def without_stiffness(balancing: Balancing, one: Search) -> Floats:
     return vectors.T[np.abs(values) <= tolerances.NO_STIFFNESS * size]
 
 
-class BalancedMotion(NamedTuple):
+@dataclass
+class BalancedMotion:
     """A motion of several freedoms along which the loads balance.
 
     Attributes:
-        first: the equilibrium from which it was followed, with its coordinates.
-        keys: (keys, places) of poses along it.
-        values: (freedoms, places) of the coordinates there.
-        freedoms: how many it has itself; of several only one place is known.
+        balancing: of the mechanism.
+        first: coordinates (freedoms,) of the equilibrium from which it was followed.
+        places: poses along it, as keys (keys,), and coordinates (freedoms,) there: of a motion of
+            one freedom along the whole of it, of several those that were found.
+        freedoms: how many it has itself.
     """
 
+    balancing: Balancing
     first: Floats
-    keys: Floats
-    values: Floats
+    places: list[tuple[Floats, Floats]]
     freedoms: int
 
     @classmethod
@@ -180,54 +184,100 @@ class BalancedMotion(NamedTuple):
         directions: Floats,
         ends: tuple[Floats, Floats],
     ) -> BalancedMotion:
-        """The motion through an equilibrium, in both directions to the ends of the window or
-        around."""
-        layout = balancing.chosen.layout
-        own = pose_keys(layout, one.place.state[:, None])
-        keys, at = [own], [values]
-        for sign in (1.0, -1.0) if len(directions) == 1 else ():
-            place, direction = one.place, sign * directions[0]
-            closed = False
-            for number in range(tolerances.MOST_MOTION_STEPS):
-                beside = balancing.forces.at(place, direction[:, None] * tolerances.MOTION_STEP)
-                if not beside.good[0]:
-                    break
-                found = search(balancing, balancing.forces.moved(place, beside))
-                if not found.found:
-                    break
-                onward = without_stiffness(balancing, found)
-                if len(onward) != 1:
-                    break
-                way = summed(place.tangents * direction[:, None])
-                turned = summed((found.place.tangents * way).T)
-                direction = onward[0] if float(summed(turned * onward[0])) > 0.0 else -onward[0]
-                place = found.place
-                now = balancing.named(place)[0]
-                keys.append(pose_keys(layout, place.state[:, None]))
-                at.append(now)
-                low, high = ends
-                if (now < low).any() or (now > high).any():
-                    break
-                again = same_poses(own, keys[-1], 0.5 * tolerances.MOTION_STEP)[0, 0]
-                closed = bool(number > 2 and again)
-                if closed:
-                    break
-            if closed:
-                break
-        return cls(values, np.concatenate(keys, axis=1), np.stack(at, axis=1), len(directions))
+        """The motion through an equilibrium; one of one freedom is followed in both directions to
+        the ends of the window or around."""
+        own = pose_keys(balancing.chosen.layout, one.place.state[:, None])[:, 0]
+        motion = cls(balancing, values, [(own, values)], len(directions))
+        if motion.freedoms == 1 and not motion._follow(one, directions[0], ends):
+            motion._follow(one, -directions[0], ends)
+        return motion
 
-    def has(self, balancing: Balancing, one: Search, values: Floats) -> bool:
-        """Whether an equilibrium without stiffness in some direction lies on it."""
+    def _follow(self, one: Search, direction: Floats, ends: tuple[Floats, Floats]) -> bool:
+        """Follows a motion of one freedom in a direction; whether it comes back."""
+        # rounding at an end of the window is no way out of it
+        slack = tolerances.SAME_EQUILIBRIUM
+        place, low, high = one.place, ends[0] - slack, ends[1] + slack
+        for number in range(tolerances.MOST_MOTION_STEPS):
+            found = self._moved(place, direction * tolerances.MOTION_STEP)
+            if found is None:
+                return False
+            (onward,) = without_stiffness(self.balancing, found)
+            way = summed(place.tangents * direction[:, None])
+            turned = summed((found.place.tangents * way).T)
+            direction = onward if float(summed(turned * onward)) > 0.0 else -onward
+            place = found.place
+            key, now = self._known(place)
+            self.places.append((key, now))
+            if (now < low).any() or (now > high).any():
+                return False
+            off = np.abs(key - self.places[0][0]).max()
+            if number > 2 and off < 0.5 * tolerances.MOTION_STEP:
+                return True
+        return False
+
+    def has(self, one: Search, values: Floats, directions: Floats) -> bool:
+        """Whether an equilibrium without stiffness in some directions lies on it."""
+        if len(directions) != self.freedoms:
+            return False
+        key = pose_keys(self.balancing.chosen.layout, one.place.state[:, None])[:, 0]
         if self.freedoms > 1:
-            return True
-        key = pose_keys(balancing.chosen.layout, one.place.state[:, None])
-        same = same_poses(self.keys, key, tolerances.MOTION_STEP)[:, 0]
-        turns = np.rint((self.values - values[:, None]) / (2.0 * np.pi)).any(axis=0)
-        return bool((same & ~turns).any())
+            return self._leads_to(one, key, values, directions)
+        return any(
+            np.abs(key - there).max() < tolerances.MOTION_STEP
+            and not np.rint((values - at) / (2.0 * np.pi)).any()
+            for there, at in self.places
+        )
 
-    def words(self, balancing: Balancing) -> str:
-        """Through which place it goes, and how far."""
-        session = balancing.chosen
+    def _leads_to(self, one: Search, key: Floats, values: Floats, directions: Floats) -> bool:
+        """Whether a motion of several freedoms leads from an equilibrium to the nearest known place
+        of this one, by steps along which the loads balance."""
+        there, goal = min(self.places, key=lambda known: float(np.abs(known[0] - key).max()))
+        place, begin = one.place, (key, values)
+        for _ in range(tolerances.MOST_SURFACE_STEPS):
+            now, rates = self.balancing.named(place)
+            off = goal - now
+            off = off - np.where(self._cyclic, np.rint(off / (2.0 * np.pi)), 0.0) * (2.0 * np.pi)
+            step = _towards(rates, directions, off)
+            if step is None:
+                return False
+            length = float(np.sqrt(summed(step * step)))
+            if length < tolerances.SAME_EQUILIBRIUM:
+                same = bool(np.abs(self._known(place)[0] - there).max() < tolerances.MOTION_STEP)
+                if same:
+                    self.places.append(begin)
+                return same
+            reach = min(1.0, tolerances.EQUILIBRIUM_REACH / length)
+            found = self._moved(place, step * reach)
+            if found is None:
+                return False
+            place, directions = found.place, without_stiffness(self.balancing, found)
+        return False
+
+    def _moved(self, place: FreePlace, step: Floats) -> Search | None:
+        """The equilibrium a step away, if it has as many freedoms without stiffness."""
+        beside = self.balancing.forces.at(place, step[:, None])
+        if not beside.good[0]:
+            return None
+        try:
+            found = search(self.balancing, self.balancing.forces.moved(place, beside))
+        except ValueError:
+            return None
+        same = found.found and len(without_stiffness(self.balancing, found)) == self.freedoms
+        return found if same else None
+
+    def _known(self, place: FreePlace) -> tuple[Floats, Floats]:
+        key = pose_keys(self.balancing.chosen.layout, place.state[:, None])[:, 0]
+        return key, self.balancing.named(place)[0]
+
+    @property
+    def _cyclic(self) -> Bools:
+        problem = self.balancing.chosen.problem
+        items = problem.motion.inputs[: self.first.size]
+        return np.array([turn_of(problem, item) is not None for item in items])
+
+    def words(self) -> str:
+        """Through which place it goes."""
+        session = self.balancing.chosen
 
         def at(number: int, value: float) -> str:
             value = value if abs(value) > tolerances.EQUILIBRIUM_STEP else 0.0
@@ -237,3 +287,15 @@ class BalancedMotion(NamedTuple):
         if self.freedoms > 1:
             return f"motions of {self.freedoms} freedoms through {place}"
         return f"a motion through {place}"
+
+
+def _towards(rates: Floats, directions: Floats, off: Floats) -> Floats | None:
+    """The step (freedoms,) of a chart, in some of its `directions`, by which named coordinates come
+    nearest to where they are `off`; None where the directions do not move them independently."""
+    moved = np.array([summed((rates * each).T) for each in directions])  # (directions, coordinates)
+    normal = [[float(summed(a * b)) for b in moved] for a in moved]
+    right = [float(summed(a * off)) for a in moved]
+    solved = eliminated(normal, right, tolerances.RANK_ZERO)
+    if solved is None:
+        return None
+    return summed(directions * np.array(solved)[:, None])

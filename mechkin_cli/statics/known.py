@@ -103,7 +103,7 @@ class Known:
         directions = without_stiffness(self.balancing, one)
         if not len(directions):
             return False
-        if any(motion.has(self.balancing, one, values) for motion in self.motions):
+        if any(motion.has(one, values, directions) for motion in self.motions):
             return True
         if is_indifferent(self.balancing, one.place, directions[0]):
             self.motions.append(
@@ -171,7 +171,7 @@ class Known:
         """That whole turns were left out, and motions are one row each."""
         notes = []
         if self.motions:
-            some = [one.words(self.balancing) for one in self.motions[: tolerances.MOST_TOLD]]
+            some = [one.words() for one in self.motions[: tolerances.MOST_TOLD]]
             more = len(self.motions) - len(some)
             some += [f"along {more} more motions"] if more else []
             text = f"the loads balance all along {', and '.join(some)}; each motion is one row"

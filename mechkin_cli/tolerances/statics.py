@@ -82,8 +82,12 @@ whose pose is that near to one on the motion lies on it."""
 MOST_MOTION_STEPS: Final = 1000
 """Steps along such a motion to one side: eight turns."""
 
+MOST_SURFACE_STEPS: Final = 40
+"""Steps of `EQUILIBRIUM_REACH` from an equilibrium to a known one of a motion of several freedoms:
+three turns."""
+
 MOST_TOLD: Final = 4
-"""Motions that a note names one by one."""
+"""Motions, parts of a window or intervals of rest that a note names one by one."""
 
 SAME_EQUILIBRIUM: Final = 1e-6
 """Two equilibria whose places differ by less, in parts of the size, are one: marginal ones are
@@ -272,9 +276,6 @@ thousand times shorter where the line is that good."""
 SAME_REST_SHARE: Final = 1e-6
 """Shares of friction at one pose that differ by more are of other loads, as of springs that count
 turns."""
-
-MOST_REST_INTERVALS: Final = 4
-"""Intervals of rest whose ends are told one by one."""
 
 # Balance in double-double.
 

@@ -286,9 +286,39 @@ loads:
     found = np.sort(np.asarray(e["A.theta"]))
     least = [-180, 0] if turns == 1 else [-360, -180]
     np.testing.assert_allclose(found, least, atol=1e-7)
-    told = [one for one in e.diagnostics if one.code == "indifferent"]
-    assert len(told) == 1
-    assert "2 motions" in str(told[0]) or str(told[0]).count("a motion through") == 2
+    (note,) = (one for one in e.diagnostics if one.code == "indifferent")
+    assert str(note).count("a motion through") == 2
+
+
+# masses of the second and the third rod of a chain; how many motions balance, of how many freedoms
+@pytest.mark.parametrize(
+    ("second", "third", "motions", "freedoms"), [(0, 0, 2, 2), (1, 0, 4, 1), (0, 1, 8, 0)]
+)
+def test_what_hangs_without_weight_stands_anywhere(
+    second: float, third: float, motions: int, freedoms: int
+) -> None:
+    text = f"""
+format: 1
+plane: xy
+units: {{length: m, angle: deg, force: N}}
+links:
+  a: {{mass: 1, center_of_mass: [0, -0.5]}}
+  b: {{mass: {second}, center_of_mass: [0, -1.4]}}
+  c: {{mass: {third}, center_of_mass: [0, -2.3]}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0]}}
+  B: {{type: R, links: [a, b], point: [0, -1]}}
+  C: {{type: R, links: [b, c], point: [0, -2]}}
+loads:
+  - {{type: gravity, g: [0, -9.81]}}
+"""
+    window = {f"{joint}.theta": (-180, 180) for joint in "ABC"}
+    e = mk.loads(text).equilibrium(["A.theta"], window=window)
+    assert len(e["A.theta"]) == motions
+    words = {0: "through", 1: "a motion through", 2: "motions of 2 freedoms through"}[freedoms]
+    notes = [str(one) for one in e.diagnostics if one.code == "indifferent"]
+    # a link that bears nothing between two that do is no motion: the third holds it
+    assert [note.count(words) for note in notes] == ([motions] if freedoms else [])
 
 
 def test_motions_that_balance_and_points_are_told_apart() -> None:
