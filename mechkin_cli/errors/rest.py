@@ -199,15 +199,9 @@ class RestRows(KernelRows):
 
     def _stiffness(self, row: int) -> Floats:
         """The slopes (free, free) of the forces by the coordinates at rest in a row, in doubles."""
-        session, rows = self.result.session, self.result.row_states
-        count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
-        inputs = session.inputs.values[:, row]
-        steps = np.zeros((inputs.size, 2 * count))
-        for k, number in enumerate(self.free):
-            steps[number, 2 * k], steps[number, 2 * k + 1] = h, -h
-        time = self.result.problem.motion.time
+        rows, time = self.result.row_states, self.result.problem.motion.time
         moment = 0.0 if time is None else float(time.values[row])
-        place = Place(inputs, rows.states[:, row], rows.turns[:, row])
-        found = self.statics.beside(place, steps, np.full(2 * count, moment))
-        slopes: Floats = (found.forces[:, ::2] - found.forces[:, 1::2]) / (2.0 * h)
-        return np.where(found.good.all(), slopes, np.nan)
+        inputs = self.result.session.inputs.values[:, row]
+        found = self.statics.slopes(Place(inputs, rows.states[:, row], rows.turns[:, row]), moment)
+        count = self.statics.count
+        return np.full((count, count), np.nan) if found is None else found[1]

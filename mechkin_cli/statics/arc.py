@@ -16,12 +16,12 @@ from mechkin_cli.memo import remembered
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import input_number, input_text, input_unit
 from mechkin_cli.statics.forces import determinant, summed
-from mechkin_cli.statics.places import Instead, Place, Statics
+from mechkin_cli.statics.places import Place, Statics
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.session import Route, Session
+    from mechkin_cli.session import Exchanged, Route, Session
     from mechkin_cli.show import Floats
 
 End = tuple[Status, Diagnostic] | None
@@ -46,7 +46,7 @@ class Followed(Protocol):
     values: Floats
     times: Floats
     crossings: list[str]
-    instead: Instead | None
+    instead: Exchanged | None
 
     def lost(self, row: int, at: str | None = None, hint: str | None = None) -> End:
         """That the branch could not be followed beyond a row, to which place at most, and what may
@@ -241,7 +241,7 @@ class Arc:
             self.branch.instead = other
             hint = (
                 "the coordinates at rest come near a dead centre there; name others under rest, as "
-                f"{'.'.join(other.name)}"
+                f"{'.'.join(other.driven.name)}"
             )
         return self.branch.lost(self.row, self._words(place, gone), hint)
 
@@ -300,25 +300,16 @@ class Arc:
 
     def _slopes(self, place: Place, gone: float) -> tuple[Floats, Floats] | None:
         """Forces (free,) and their slopes (free, free + 1) at a place."""
-        count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
-        steps = np.zeros((place.inputs.size, 2 * count + 3))
-        times = np.full(2 * count + 3, self._time(gone))
-        # as far as the mechanism moves, which is much beside a dead centre
-        tangents = self.statics.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
-        sizes = np.maximum(np.sqrt(summed((tangents * tangents).T)), 1.0)
-        for number, k in enumerate(self.free):
-            steps[k, 2 * number : 2 * number + 2] = np.array([h, -h]) / sizes[number]
-        here, onward = self._inputs(gone), h * self.scale
-        for by, column in ((onward, 2 * count), (-onward, 2 * count + 1)):
-            steps[:, column] = self._inputs(gone + by) - here
-            times[column] = self._time(gone + by)
-        found = self.statics.beside(place, steps, times)
-        if not found.good.all():
+        here, onward = self._inputs(gone), tolerances.NEWTON_DIFFERENCE * self.scale
+        beyond = np.array([onward, -onward]) + gone
+        steps = np.stack([self._inputs(at) - here for at in beyond.tolist()], axis=1)
+        times = np.array([self._time(at) for at in beyond.tolist()])
+        found = self.statics.slopes(place, self._time(gone), steps, times)
+        if found is None:
             return None
-        changes = (found.forces[:, :-1:2] - found.forces[:, 1:-1:2]) / (2.0 * h)
-        changes[:, :-1] *= sizes
-        changes[:, -1] /= self.scale
-        return found.forces[:, -1], changes
+        forces, slopes = found
+        along = (forces[:, 1:2] - forces[:, 2:3]) / (2.0 * onward)
+        return forces[:, 0], np.concatenate([slopes, along], axis=1)
 
     def _going(self, place: Place, gone: float, before: Floats | None) -> _Going | None:
         """How the branch goes on at a place, onward from the direction before."""

@@ -19,14 +19,14 @@ from mechkin_cli.mechanism import ZERO, effort_quantity
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.session import Ask, RowInputs, turn_of
+from mechkin_cli.session import Ask, RowInputs, exchange, turn_of
 from mechkin_cli.statics.forces import combined, summed
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from mechkin_cli.plan import Readout
-    from mechkin_cli.session import Ending, Session
+    from mechkin_cli.session import Ending, Exchanged, Session
     from mechkin_cli.show import Bools, Floats
 
 
@@ -40,15 +40,6 @@ class Place(NamedTuple):
     inputs: Floats
     state: Floats
     turns: Floats
-
-
-class Instead(NamedTuple):
-    """A coordinate of the tree that takes the place of input `number`: (edge, freedom) and (joint,
-    coordinate)."""
-
-    number: int
-    at: tuple[int, int]
-    name: tuple[str, str]
 
 
 class Forced(NamedTuple):
@@ -128,15 +119,20 @@ class Statics:
 
     def forces(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Forced:
         """Forces at places (inputs, places) closed from guesses (states, places)."""
+        found = self.efforts(self.rows(inputs, states, turns, time))
+        return found._replace(forces=found.forces * self.units[:, None])
+
+    def efforts(self, rows: RowInputs) -> Forced:
+        """What drives of the free coordinates would have to exert in rows, N*m or N."""
         readout = self.readout
-        batch = self.session.run(self.rows(inputs, states, turns, time), Ask(_FORCES, readout))
+        batch = self.session.run(rows, Ask(_FORCES, readout))
         assert batch.outputs is not None
         slots = [readout.slots[wanted.name].start for wanted in readout.wanted]
-        forces = batch.outputs[slots] * self.units[:, None]
-        good = batch.good & np.isfinite(forces).all(axis=0)
+        efforts = batch.outputs[slots]
+        good = batch.good & np.isfinite(efforts).all(axis=0)
         if batch.undefined is not None:
             good &= ~batch.undefined.astype(bool)
-        return Forced(forces, batch.states, good)
+        return Forced(efforts, batch.states, good)
 
     def largest_at(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Floats:
         """The largest force of one load alone, or of all weights, at each of many places (places,):
@@ -176,9 +172,33 @@ class Statics:
         turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
         return self.forces(inputs, states, turns, time)
 
+    def slopes(
+        self, place: Place, time: float, more: Floats | None = None, times: Floats | None = None
+    ) -> tuple[Floats, Floats] | None:
+        """Forces (free, 1 + more) at a place and where all inputs are `more` (inputs, more) away,
+        at `times` (more,), and the slopes (free, free) of those at the place; None where one has
+        no value."""
+        count, h = self.count, tolerances.NEWTON_DIFFERENCE
+        extra = np.zeros((place.inputs.size, 0)) if more is None else more
+        here = 2 * count
+        steps = np.zeros((place.inputs.size, here + 1 + extra.shape[1]))
+        steps[:, here + 1 :] = extra
+        moments = np.full(steps.shape[1], time)
+        moments[here + 1 :] = time if times is None else times
+        # as far as the mechanism moves, which is much beside a dead centre
+        tangents = self.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
+        sizes = np.maximum(np.sqrt(summed((tangents * tangents).T)), 1.0)
+        for number, k in enumerate(self.free):
+            steps[k, 2 * number : 2 * number + 2] = np.array([h, -h]) / sizes[number]
+        found = self.beside(place, steps, moments)
+        if not found.good.all():
+            return None
+        changes = found.forces[:, :here:2] - found.forces[:, 1:here:2]
+        return found.forces[:, here:], changes * sizes / (2.0 * h)
+
     def beside_dead_centre(
         self, place: Place, known: Place, *, surely: bool = False
-    ) -> Instead | None:
+    ) -> Exchanged | None:
         """What tells places apart about `place` where the free coordinates, which do so at a
         `known` place, stand near a dead centre there; None where they do not, unless they `surely`
         do."""
@@ -189,19 +209,23 @@ class Statics:
             return None
         # what moves most there, in place of the free coordinate that it moves with most before
         way = tangents[int(np.argmax(np.where(np.isfinite(sizes), sizes, -1.0)))]
-        unknown = {at for block in session.graph.blocks for at in block.unknowns}
-        scalars = [
-            (abs(float(way[layout.column(number, freedom)])), (number, freedom), name)
-            for number, edge in enumerate(session.graph.edges)
-            for name, freedom in edge.joint.type.scalars.items()
-            if (number, freedom) in unknown
+        moved = [
+            max(abs(float(way[layout.column(*at)])) for at in block.unknowns)
+            for block in session.graph.blocks
         ]
-        if not scalars:
+        if not np.isfinite(moved).any():
             return None
-        _, at, name = max(scalars)
+        block = int(np.nanargmax(moved))
         before = self.tangents(known.inputs[:, None], known.state[:, None])[:, :, 0]
-        number = self.free[int(np.argmax(np.abs(before[:, layout.column(*at)])))]
-        return Instead(number, at, (session.graph.edges[at[0]].joint.name, name))
+        others = [exchange(session, number, block, way) for number in self.free]
+        told = [
+            abs(float(before[k, one.driven.column]))
+            if one is not None and one.driven.name[1] in _scalars(one)
+            else -1.0
+            for k, one in enumerate(others)
+        ]
+        best = int(np.argmax(told))
+        return others[best] if told[best] > 0.0 else None
 
     def place(self, inputs: Floats, state: Floats) -> Place:
         """A closed place at some inputs, to which nothing was followed."""
@@ -218,6 +242,12 @@ class Statics:
         assert found.turns is not None
         count = found.reached
         return Way(found.guess[:, :count], found.turns[:, :count], found.ending)
+
+
+def _scalars(one: Exchanged) -> Collection[str]:
+    """The names of the coordinates of the joint that is driven instead."""
+    edge, _ = one.driven.at
+    return one.session.graph.edges[edge].joint.type.scalars
 
 
 @remembered

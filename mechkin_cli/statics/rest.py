@@ -22,16 +22,15 @@ from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Continued, input_unit
 from mechkin_cli.statics.arc import Arc, End
 from mechkin_cli.statics.newton import Balancing, search
-from mechkin_cli.statics.places import Instead, Place, Statics, eigen
+from mechkin_cli.statics.places import Place, Statics, eigen
 from mechkin_cli.statics.stretch import Places, Stretches
-from mechkin_cli.structure import exchanged
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Rest
-    from mechkin_cli.session import Precise, Session
+    from mechkin_cli.session import Exchanged, Precise, Session
     from mechkin_cli.show import Floats
 
 
@@ -61,7 +60,7 @@ def rested(session: Session) -> Session:
             break
         if further.rest.rows == found.rest.rows and branch.instead is not None:
             break
-        notes = (*notes, _exchange_note(session, instead))
+        notes = (*notes, _exchange_note(instead))
         session, found = _exchanged(session, instead, found.start), further
     found = found._replace(rest=found.rest._replace(notes=(*notes, *found.rest.notes)))
     moved = _moved(session, found.rest, found.values)
@@ -72,17 +71,17 @@ def rested(session: Session) -> Session:
     return replace(moved, base=None, first=found.start._replace(chosen=start))
 
 
-def _exchanged(session: Session, instead: Instead, start: Continued) -> Session:
+def _exchanged(session: Session, instead: Exchanged, start: Continued) -> Session:
     """The session in which another coordinate of the tree rests, from the place where it was
     followed on."""
     assert start.state is not None
-    other = session.exchanged(exchanged(session.graph, *instead))
+    other = session.exchanged(instead.session.graph)
     problem, motion = session.problem, session.problem.motion
-    joint, coordinate = instead.name
+    joint, coordinate = instead.driven.name
     inputs, still = list(motion.inputs), np.zeros(motion.rows)
     orders = np.zeros((4, motion.rows))
     item = DrivenInput(joint, coordinate, still, still, still, still, orders)
-    value = float(start.state[other.layout.state(*instead.at)])
+    value = float(start.state[instead.driven.state])
     in_si = value * input_unit(other.layout, item)
     orders[0] = problem.units.from_si(in_si, dimension_of(coordinate))
     inputs[instead.number] = item._replace(values=still + in_si, written_orders=orders)
@@ -91,7 +90,7 @@ def _exchanged(session: Session, instead: Instead, start: Continued) -> Session:
     return replace(other, problem=problem)
 
 
-def _blocked(session: Session, found: _Rows) -> Instead | None:
+def _blocked(session: Session, found: _Rows) -> Exchanged | None:
     """What tells places apart where the straight way from a row to the next, which the sweep goes
     though the branch of equilibria does not, comes to a dead centre; None where it does not."""
     start = found.start
@@ -107,13 +106,10 @@ def _blocked(session: Session, found: _Rows) -> Instead | None:
     return None
 
 
-def _exchange_note(session: Session, instead: Instead) -> Diagnostic:
+def _exchange_note(instead: Exchanged) -> Diagnostic:
     """That another coordinate took the place of one at rest."""
-    before = ".".join(session.problem.motion.driven[instead.number])
-    text = (
-        f"{before} comes near a dead centre of its own: {'.'.join(instead.name)} tells the "
-        "equilibria apart in its place"
-    )
+    before, now = (".".join(one.name) for one in (instead.freed, instead.driven))
+    text = f"{before} comes near a dead centre of its own: {now} tells the equilibria in its place"
     return Diagnostic("rest-exchanged", "note", text)
 
 
@@ -175,7 +171,7 @@ class _Branch:
         self.stretches = Stretches(self.statics, self.values, self.times)
         self.least = np.full(self.rows, np.nan)
         self.crossings: list[str] = []
-        self.instead: Instead | None = None
+        self.instead: Exchanged | None = None
         self.arcs = 0
 
     def follow(self, row: int, state: Floats) -> _Rows:

@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.plan import Demand
 from mechkin_cli.record import replace
-from mechkin_cli.session import Ask
 from mechkin_cli.statics import ForcesAt, Statics, differentiated
 
 if TYPE_CHECKING:
@@ -23,8 +21,6 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.statics import Derivative
     from mechkin_cli.sweep import Result
-
-_FORCES = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
 
 
 class InputForces:
@@ -83,14 +79,8 @@ class InputForces:
             rates=of_all(self._rates, rates),
             accelerations=of_all(self._accelerations, accelerations),
         )
-        readout = self._statics.readout
-        batch = self.session.run(rows, Ask(_FORCES, readout))
-        assert batch.outputs is not None
-        efforts = batch.outputs[[readout.slots[one.name].start for one in readout.wanted]]
-        good = batch.good & np.isfinite(efforts).all(axis=0)
-        if batch.undefined is not None:
-            good &= batch.undefined == 0
-        return ForcesAt(efforts, batch.states, turns, good)
+        found = self._statics.efforts(rows)
+        return ForcesAt(found.forces, found.states, turns, found.good)
 
     @cached_property
     def efforts(self) -> Floats:
