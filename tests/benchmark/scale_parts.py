@@ -19,7 +19,7 @@ import yaml
 from benchmark import studies
 from benchmark.kernel_case import BATCH
 from benchmark.yardstick_kernel import LEVELS, Yardstick, load
-from scipy.integrate import solve_ivp
+from response.points_on_bars import GRAVITY, points_on_bars
 from structure.networks import scissors, windows
 
 import mechkin_cli as mk
@@ -141,7 +141,7 @@ def doubled(first: int, most: int) -> Iterator[int]:
         count *= 2
 
 
-GRAVITY, TOLERANCE = 9.81, 1e-9
+TOLERANCE = 1e-9
 
 
 def pendulums(count: int) -> str:
@@ -168,20 +168,8 @@ def pendulums(count: int) -> str:
 
 def fall_by_scipy(count: int) -> np.ndarray:
     """The angles of the bars against the level after a second."""
-    length = 1.0 / count
-    # of the points that each two bars carry both
-    carried = count - np.maximum.outer(np.arange(count), np.arange(count))
-    weights = GRAVITY * (count - np.arange(count)) / length
-
-    def rates(_: float, state: np.ndarray) -> np.ndarray:
-        angles, speeds = np.split(state, 2)
-        apart = angles[:, None] - angles
-        right = -(carried * np.sin(apart)) @ speeds**2 - weights * np.cos(angles)
-        return np.concatenate([speeds, np.linalg.solve(carried * np.cos(apart), right)])
-
-    start = np.zeros(2 * count)
-    found = solve_ivp(rates, (0.0, 1.0), start, "DOP853", rtol=TOLERANCE, atol=TOLERANCE)
-    return np.asarray(found.y[:count, -1])
+    level = [0.5 * np.pi] * count
+    return np.asarray(points_on_bars(level, (0.0, 1.0), TOLERANCE)[-1] - 0.5 * np.pi)
 
 
 PARTS = {

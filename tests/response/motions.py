@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 import mechkin_cli as mk
+from mechkin_cli.kernel.functions import widths
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -33,3 +34,14 @@ def off(found: Any, expected: Any) -> float:
 
 def last_time(found: Any) -> float:
     return float(found["time"][-1])
+
+
+def has_same_bits(text: str, names: list[str]) -> None:
+    """Asserts that quantities of the response `run` do not depend on lanes or threads."""
+    runs = [
+        mk.loads(text).respond("run", names, lanes=lanes, threads=threads)
+        for lanes in widths()
+        for threads in (1, 2)
+    ]
+    for name in names:
+        assert len({np.asarray(run[name], float).tobytes() for run in runs}) == 1, name

@@ -6,14 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from oracle.dynamics.response import prepare
-from response.motions import off, respond
-from scipy.integrate import solve_ivp
-
-import mechkin_cli as mk
-from mechkin_cli.kernel.functions import widths
-
-GRAVITY = 9.81
-
+from response.motions import has_same_bits, off, respond
+from response.points_on_bars import GRAVITY, points_on_bars
 
 START = {
     "B.s": 0.1,
@@ -117,40 +111,16 @@ def start(k: int) -> float:
     return 0.3 - 0.07 * k
 
 
-def points_on_bars(count: int) -> np.ndarray:
-    """Angles (rows, count) of the bars against the vertical."""
-    length = 1.0 / count
-    carried = count - np.maximum.outer(np.arange(count), np.arange(count))
-    weights = GRAVITY * (count - np.arange(count)) / length
-
-    def rates(_: float, state: np.ndarray) -> np.ndarray:
-        angles, speeds = np.split(state, 2)
-        apart = angles[:, None] - angles
-        right = -(carried * np.sin(apart)) @ speeds**2 - weights * np.sin(angles)
-        return np.concatenate([speeds, np.linalg.solve(carried * np.cos(apart), right)])
-
-    begin = np.concatenate([[start(k) for k in range(count)], np.zeros(count)])
-    times = np.linspace(0.0, 0.5, 6)
-    found = solve_ivp(rates, (0.0, 0.5), begin, "DOP853", times, rtol=1e-12, atol=1e-12)
-    return np.asarray(found.y[:count].T)
-
-
 @pytest.mark.parametrize("count", [3, 8, 14])
 def test_parallelograms_in_series(count: int) -> None:
     """From 7 on by composite bodies, before link by link."""
     found = respond(parallelograms(count))
-    exact = points_on_bars(count)
+    begin = [start(k) for k in range(count)]
+    exact = points_on_bars(begin, np.linspace(0.0, 0.5, 6), 1e-12)
     for k in range(count):
         assert off(found[f"A{k}.theta"], exact[:, k]) < 1e-9, k
 
 
 @pytest.mark.parametrize("text", [tree(True), parallelograms(8)])
 def test_no_bit_depends_on_lanes_or_threads(text: str) -> None:
-    names = ["C.theta" if " A:" in text else "A7.theta", "row.energy_error"]
-    runs = [
-        mk.loads(text).respond("run", names, lanes=lanes, threads=threads)
-        for lanes in widths()
-        for threads in (1, 2)
-    ]
-    for name in names:
-        assert len({np.asarray(run[name], float).tobytes() for run in runs}) == 1, name
+    has_same_bits(text, ["C.theta" if " A:" in text else "A7.theta", "row.energy_error"])

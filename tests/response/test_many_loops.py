@@ -9,10 +9,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 from response.four_bar_rows import GRAVITY, FourBars, misses, unequal
+from response.motions import has_same_bits
 from response.parallel_cranks import CompoundPendulum
 
 import mechkin_cli as mk
-from mechkin_cli.kernel.functions import widths
 from mechkin_cli.response import runs
 
 RATE = 0.8
@@ -118,13 +118,7 @@ def test_a_row_of_parallel_cranks_is_a_pendulum() -> None:
 def test_no_bit_depends_on_lanes_or_threads() -> None:
     text = unequal(12, 3).text(*lines("A0"))
     names = ["A12.theta", "A0.theta_dot", "row.energy_error", "row.condition", "C3.force.x"]
-    runs = [
-        mk.loads(text).respond("run", names, lanes=lanes, threads=threads)
-        for lanes in widths()
-        for threads in (1, 2)
-    ]
-    for name in names:
-        assert len({np.asarray(run[name], float).tobytes() for run in runs}) == 1, name
+    has_same_bits(text, names)
 
 
 def test_variants_in_lanes_are_as_alone() -> None:

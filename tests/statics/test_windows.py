@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from statics.roots import roots
 
 import mechkin_cli as mk
 
@@ -32,14 +32,6 @@ WEIGHT = {"type": "gravity", "g": [0, -G, 0]}
 
 def told(r: Any) -> list[str]:
     return [note.code for note in r.diagnostics]
-
-
-def roots(moment: Any, low: float, high: float) -> list[float]:
-    grid = np.linspace(low, high, 40001) + 1e-9  # not at zero
-    signs = np.sign([moment(t) for t in grid])
-    return [
-        brentq(moment, grid[k], grid[k + 1], xtol=1e-14) for k in np.flatnonzero(np.diff(signs))
-    ]
 
 
 def test_turns_at_which_loads_are_the_same_are_one_row_and_a_note_says_so() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from statics.roots import roots
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import functions
@@ -41,14 +41,6 @@ def two_pendulums(stiffness: tuple[float, float]) -> dict[str, Any]:
         },
         "loads": [{"type": "gravity", "g": [0, -G, 0]}, *springs],
     }
-
-
-def roots(moment: Any, low: float, high: float) -> list[float]:
-    grid = np.linspace(low, high, 4001) + 1e-7
-    signs = np.sign([moment(t) for t in grid])
-    return [
-        brentq(moment, grid[k], grid[k + 1], xtol=1e-14) for k in np.flatnonzero(np.diff(signs))
-    ]
 
 
 def test_equilibria_in_several_turns_are_all_pairs_of_those_of_each_freedom() -> None:
