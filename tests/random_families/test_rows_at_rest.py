@@ -205,3 +205,29 @@ def test_rows_do_not_depend_on_which_coordinates_rest(rng: random.Random) -> Non
         if not (lost[0] or other_lost):
             np.testing.assert_array_equal(np.isfinite(other), np.isfinite(found[0]))
         assert np.nanmax(off) < 1e-7
+
+
+@pytest.mark.parametrize(
+    ("seed", "pair"), [(0, "D.theta, E.theta"), (9, "A.theta, B.theta"), (56, "A.theta, B.theta")]
+)
+def test_rows_told_by_another_coordinate_are_rows_like_others(seed: int, pair: str) -> None:
+    own = _five_bar(random.Random(seed)).replace("units:", "parameters: {k: 5}\nunits:")
+    own = own.replace("stiffness: 5}", "stiffness: k*1 N*m/rad}")
+    m = mk.loads(own + f"motion: {{time: {{from: 0, to: 1.5, count: 16}}, rest: [{pair}]}}\n")
+    names = [f"{joint}.theta" for joint in "ABDE"]
+    r = m.analyze(names)
+    assert "rest-exchanged" in [one.code for one in r.diagnostics]
+    assert np.isfinite([r[name] for name in names]).all()
+    assert max(r.errors[name].max() for name in names) < 1e-10
+    s = m.sensitivities(names, ["k"], run="sweep")
+    ends = [m.with_parameters({"k": 5 + h}).analyze(names) for h in (1e-4, -1e-4)]
+    varied = m.vary({"k": [5 + 1e-4, 5 - 1e-4]}, names)
+    narrow = m.analyze(names, lanes=2, threads=1)
+    blocks = list(m.stream(names, rows=5))
+    for name in names:
+        slope = (ends[0][name] - ends[1][name]) / 2e-4
+        np.testing.assert_allclose(s[name, "k"], slope, rtol=1e-6, atol=1e-8)
+        for number, end in enumerate(ends):
+            np.testing.assert_array_equal(varied[name][number], end[name])
+        np.testing.assert_array_equal(narrow[name], r[name])
+        np.testing.assert_array_equal(np.concatenate([one[name] for one in blocks]), r[name])
