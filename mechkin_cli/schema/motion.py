@@ -383,6 +383,10 @@ _GRID_INPUTS: Final = 2
 class MotionSection(Section):
     """The driven coordinates. Without inputs the mechanism has one row."""
 
+    editors: ClassVar[dict[str, Any]] = {
+        "not": {"required": ["grid", "rest"], "properties": {"grid": {"const": True}}}
+    }
+
     inputs: dict[Coordinate, InputMotion] = NOTHING
     """Driven coordinates by name; left out, one row, which stands as it is assembled."""
     time: TimeSection | None = None

@@ -202,7 +202,13 @@ class CoordinateWindow(Section):
 class Equilibrium(Section):
     """Places at which all loads balance: one near a start, or all within a window."""
 
-    editors: ClassVar[dict[str, Any]] = {"not": {"required": ["near", "window"]}}
+    editors: ClassVar[dict[str, Any]] = {
+        "allOf": [
+            {"not": {"required": ["near", "window"]}},
+            {"not": {"required": ["mode", "window"]}},
+        ],
+        "dependentRequired": {"starts": ["window"]},
+    }
     advice: ClassVar[dict[str, str]] = {
         "start": "where the search starts stands under near: {A.theta: 20}",
         "inputs": "coordinates that are held stand under driven: {A.theta: {at: 20}}",
@@ -233,7 +239,7 @@ class Equilibrium(Section):
     """The moment for which loads that depend on time are taken; left out, 0."""
 
     def check(self) -> None:
-        """One of near and window at most; a window takes every mode."""
+        """One of near and window at most; a window takes every mode and has the starts."""
         if self.near and self.window:
             text = "near asks for one equilibrium, window for all"
             raise refuse("two-choices", text, "keep one of them", "window")

@@ -238,6 +238,8 @@ EQUILIBRIA = [
     equilibrium("near: {O.theta: 2}, time: »3 mm", "expression", "expected a time", "length"),
     changed("step: 5}}}", "step: 5}}, rest: [»O.theta]}", "rest-and-input", "cannot rest"),
     changed("step: 5}}}", "step: 5}}, rest: [»Q.s]}", "unknown-coordinate", "Q.s is not"),
+    changed("step: 5}}}", "step: 5}}, rest: [A.s, »A.s]}", "named-twice", "name it once"),
+    changed("step: 5}}}", "step: 5}}, grid: true, rest: »[A.s]}", "rest-in-grid", "remove rest"),
 ]
 """Where loads balance."""
 
