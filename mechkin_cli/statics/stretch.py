@@ -34,17 +34,13 @@ class Beside(NamedTuple):
     """What is known about places and beside them.
 
     Attributes:
-        forces: (free, places).
         stiffness: (free, free, places).
         pushes: (ways, free, places) what the forces change by along each way.
-        states: (states, places) closed.
         good: which of all that have values (places,).
     """
 
-    forces: Floats
     stiffness: Floats
     pushes: Floats
-    states: Floats
     good: Bools
 
 
@@ -346,7 +342,7 @@ class Stretches:
         return told
 
     def beside(self, at: Places, ways: list[tuple[Floats, Floats]] | None = None) -> Beside:
-        """Forces and stiffness at places, and what the forces change by along `ways`: those of the
+        """The stiffness at places, and what the forces change by along `ways`: those of the
         inputs (inputs, places) and of time (places,)."""
         count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
         places, ways = at.times.size, ways or []
@@ -370,10 +366,8 @@ class Stretches:
         changes = (forces[:, 1::2] - forces[:, 2::2]) / (2.0 * h)
         pushes = [changes[:, count + k] * size for k, size in enumerate(sizes)]
         return Beside(
-            forces[:, 0],
             changes[:, :count],
             np.array(pushes),
-            found.states[:, :places],
             np.asarray(found.good.reshape(kinds, places).all(axis=0)),
         )
 
