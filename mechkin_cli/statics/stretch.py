@@ -18,7 +18,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.forces import determinant, summed
+from mechkin_cli.statics.forces import determinant
 from mechkin_cli.statics.places import Places
 
 if TYPE_CHECKING:
@@ -203,11 +203,12 @@ class Stretches:
         """Rows among those that are told through which the next `count` ones are extrapolated, the
         last one first, about as far apart as their number goes."""
         most = tolerances.REST_POINTS - 1
-        ago = np.abs(told[-1] - told[::-1])
+        before = told[: -2 - max(count, most) : -1]
+        ago = np.abs(before - told[-1])
         apart = max(1, min(int(ago[-1]), count) // most)
         wanted = np.searchsorted(ago, apart * np.arange(most + 1))
-        wanted = wanted[wanted < told.size]
-        return told[::-1][wanted[np.diff(wanted, prepend=-1) > 0]]
+        wanted = wanted[wanted < before.size]
+        return before[wanted[np.diff(wanted, prepend=-1) > 0]]
 
     def _along_rate(self, place: Place, row: int, rows: Rows) -> Floats | None:
         """The same where one row alone is known, by the rate of the branch there."""
@@ -392,10 +393,11 @@ def _interpolated(points: Rows, numbers: Floats, rows: Rows) -> Floats:
     met = away == 0
     shares = weights[:, None] / np.where(met, 1.0, away)
     shares = np.where(met.any(axis=0), met, shares)
-    total = np.zeros((len(numbers), rows.size))
+    total, whole = np.zeros((len(numbers), rows.size)), np.zeros(rows.size)
     for point, share in zip(numbers.T, shares, strict=True):
         total += point[:, None] * share
-    return np.asarray(total / summed(shares))
+        whole += share
+    return total / whole
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats:
