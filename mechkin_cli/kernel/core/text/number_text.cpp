@@ -41,38 +41,28 @@ constexpr Shorts HUNDREDS_AND_REST = {1, 65436, 1, 65436, 1, 65436, 1, 65436};  
 // Of eight digits that are not all zeros.
 int zeros_behind(std::uint64_t digits) { return (int)((unsigned)__builtin_ctzll(__builtin_bswap64(digits)) / 8); }
 
-// The characters of a decimal number's first digit and of the sixteen behind it.
-struct Digits {
-  std::uint64_t near, far;  // characters of those behind the first
-  char first;
-  int count;  // without the zeros at the end
-  int whole;  // before the point
+__attribute__((always_inline)) inline NumberDigits digits_of(const DecimalNumber& decimal) {
+  constexpr std::uint32_t eight = 100000000;
+  const std::uint64_t high = decimal.digits / eight, most = high / eight;
+  const std::uint64_t upper = high - most * eight, lower = decimal.digits - high * eight;
+  // four digits, then two, then one in a place, of all at once
+  const auto fours = (Shorts)Halves{in_halves(upper), in_halves(lower)};
+  const Shorts hundreds = fours / 100;
+  const Shorts both = hundreds | (Shorts)((Words)hundreds << 16);
+  const Shorts pairs = (Shorts)((Words)fours << 16) + both * HUNDREDS_AND_REST;
+  const Shorts tens = pairs * 103 >> 10;             // a tenth, of what is below 100
+  const Shorts digits = (pairs << 8) - tens * 2559;  // the tens, and 256 times what is left of ten of them
+  const std::uint64_t near = ((Halves)digits)[0], far = ((Halves)digits)[1];
+  const int count = far ? MOST_DIGITS - zeros_behind(far) : near ? MOST_DIGITS - 8 - zeros_behind(near) : 1;
+  return {near | ZEROS, far | ZEROS, (char)('0' + most), count, decimal.whole};
+}
 
-  explicit Digits(const DecimalNumber& decimal) {
-    constexpr std::uint32_t eight = 100000000;
-    const std::uint64_t high = decimal.digits / eight, most = high / eight;
-    const std::uint64_t upper = high - most * eight, lower = decimal.digits - high * eight;
-    // four digits, then two, then one in a place, of all at once
-    const auto fours = (Shorts)Halves{in_halves(upper), in_halves(lower)};
-    const Shorts hundreds = fours / 100;
-    const Shorts both = hundreds | (Shorts)((Words)hundreds << 16);
-    const Shorts pairs = (Shorts)((Words)fours << 16) + both * HUNDREDS_AND_REST;
-    const Shorts tens = pairs * 103 >> 10;  // a tenth, of what is below 100
-    const Shorts digits = (pairs << 8) - tens * 2559;  // the tens, and 256 times what is left of ten of them
-    const std::uint64_t front = ((Halves)digits)[0], back = ((Halves)digits)[1];
-    near = front | ZEROS, far = back | ZEROS;
-    first = (char)('0' + most);
-    count = back ? MOST_DIGITS - zeros_behind(back) : front ? MOST_DIGITS - 8 - zeros_behind(front) : 1;
-    whole = decimal.whole;
-  }
-};
-
-void put_behind(const Digits& digits, char* out) {
+void put_behind(const NumberDigits& digits, char* out) {
   put_eight(digits.near, out);
   put_eight(digits.far, out + 8);
 }
 
-std::size_t put_plain(const Digits& digits, char* out) {
+std::size_t put_plain(const NumberDigits& digits, char* out) {
   const int whole = digits.whole, before = whole - 1;  // the point stands behind `before` of those behind the first
   if (whole <= 0) {
     std::memcpy(out, "0.000000", 8);  // no plain number has more than four zeros behind its point
@@ -94,7 +84,7 @@ std::size_t put_plain(const Digits& digits, char* out) {
   return (std::size_t)(digits.count <= whole ? whole : digits.count + 1);
 }
 
-std::size_t put_scientific(const Digits& digits, char* out) {
+std::size_t put_scientific(const NumberDigits& digits, char* out) {
   out[0] = digits.first;
   out[1] = '.';
   put_behind(digits, out + 2);
@@ -115,15 +105,19 @@ std::size_t put_scientific(const Digits& digits, char* out) {
 // Digits before the point of what is below 1e16, and of 1e-5 and 1e-4.
 constexpr int MOST_WHOLE = 16, LEAST_WHOLE = -4, LEAST_WHOLE_OF_JSON = -3;
 
+// Whether a magnitude has digits: it is neither zero, nor infinite, nor not a number.
+bool has_digits(std::uint64_t bits) { return bits - 1 < INFINITE_BITS - 1; }
+
 // Shortest digits, without an exponent where the first of them stands at 10^(least - 1) or above, and the number is
-// below 1e16; nothing of what is not finite.
-std::size_t shortest(double x, int least, char* out) {
+// below 1e16; nothing of what is not finite. `digits` says those of a magnitude.
+template <class DigitsOf>
+std::size_t shortest(double x, int least, char* out, const DigitsOf& digits_of_bits) {
   const std::uint64_t bits = bits_of(x) & ~SIGN;
-  if (bits - 1 >= INFINITE_BITS - 1) {
+  if (!has_digits(bits)) {
     *out = '0';
     return bits == 0;
   }
-  const Digits digits(shortest_decimal(bits));
+  const NumberDigits& digits = digits_of_bits(bits);
   const bool sign = bits_of(x) >> 63;
   *out = '-';
   out += sign;
@@ -131,7 +125,24 @@ std::size_t shortest(double x, int least, char* out) {
   return sign + (is_plain ? put_plain(digits, out) : put_scientific(digits, out));
 }
 
+std::size_t shortest(double x, int least, char* out) {
+  return shortest(x, least, out, [](std::uint64_t bits) { return digits_of(shortest_decimal(bits)); });
+}
+
 }  // namespace
+
+void find_digits(const double* numbers, std::size_t count, NumberDigits* digits) {
+  DecimalNumber decimals[NUMBERS_TOGETHER];
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint64_t bits = bits_of(numbers[k]) & ~SIGN;
+    decimals[k] = has_digits(bits) ? shortest_decimal(bits) : DecimalNumber{};
+  }
+  for (std::size_t k = 0; k < count; ++k) digits[k] = digits_of(decimals[k]);
+}
+
+std::size_t number_text(double x, const NumberDigits& digits, char* out) {
+  return shortest(x, LEAST_WHOLE, out, [&](std::uint64_t) -> const NumberDigits& { return digits; });
+}
 
 std::size_t number_text(double x, char* out) { return shortest(x, LEAST_WHOLE, out); }
 
