@@ -160,7 +160,8 @@ def build(
     balances = _balances(fields, file, problem)
     coefficients = build_coefficients(fields, file, problem, tables)
     view = _view(fields, file, problem)
-    forces = needs_forces(problem, own)
+    used = used_by(problem, own)
+    forces = bool(demand_of(problem.mechanism, used) & Demand.FORCES)
     # the unit of forces that are computed stands above their column
     if file.loads or any(run.efforts for run in file.free_runs.values()):
         note_force_unit(fields)
@@ -176,7 +177,7 @@ def build(
             problem = replace(problem, held=held)
             graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
-        check_spins(fields, problem, own)
+        check_spins(fields, problem, used)
         problem = settled(problem)
     graphs: Graphs = {}
     if problem.responses and graph is not None:
@@ -317,18 +318,15 @@ def build_problem(
     return replace(problem, responses=build_responses(*args))
 
 
-def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
-    """Notes links that spin freely and have a cause to spin, where forces or energies are read."""
-    if needs_all_links(problem.mechanism, _used(problem, tables)):
+def check_spins(fields: Fields, problem: Problem, used: Sequence[Wanted]) -> None:
+    """Notes links that spin freely and have a cause to spin, where `used` quantities are forces or
+    energies."""
+    if needs_all_links(problem.mechanism, used):
         note_spins(fields, problem)
 
 
-def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
-    """Whether some column reads a force."""
-    return bool(demand_of(problem.mechanism, _used(problem, tables)) & Demand.FORCES)
-
-
-def _used(problem: Problem, tables: Sequence[TableLayout]) -> list[Wanted]:
+def used_by(problem: Problem, tables: Sequence[TableLayout]) -> list[Wanted]:
+    """The quantities that some tables read."""
     quantities = problem.quantities()
     return [quantities[name] for name in used_quantities(tables, quantities)]
 
