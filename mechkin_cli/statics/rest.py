@@ -7,7 +7,6 @@ arclength: it gets there, or turns back before (a fold), and the mechanism snaps
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -265,9 +264,12 @@ class _Branch:
             for number, own in zip(self.free, taken.free, strict=True):
                 self.values[number, taken.rows] = own
             known += taken.rows.tolist()
-            for number, (begin, end) in enumerate(pairwise([at - step, *taken.nodes.tolist()])):
-                least = _least(taken.stiffness[:, :, number])
-                self.least[begin + step : end + step : step] = least
+            # each node tells of the rows before it, and the last one of those behind it, too
+            least = [_least(matrix) for matrix in taken.stiffness.transpose(2, 0, 1)]
+            ends = np.abs(taken.nodes - at) + 1
+            ends[-1] = taken.rows.size + 1
+            rows = at + step * np.arange(ends[-1])
+            self.least[rows] = np.repeat(least, np.diff(ends, prepend=0))
         return known[-1], None
 
     def _tell(self, row: int, place: Place) -> None:

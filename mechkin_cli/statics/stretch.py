@@ -179,15 +179,12 @@ class Stretches:
         if told.size == 1:
             return self._along_rate(place, int(told[0]), rows)
         points = self._points(told, rows.size)
-        # Newton's divided differences, and the terms of his polynomial; it ends with the one that
-        # leaves most rows told
-        differences = self.values[np.array(self.free)[:, None], points]
-        start, first = differences[:, :1], []
-        for k in range(1, points.size):
-            differences = (differences[:, 1:] - differences[:, :-1]) / (points[k:] - points[:-k])
-            first.append(differences[:, 0])
+        values = self.values[np.array(self.free)[:, None], points]
+        # the terms of Newton's polynomial; it ends with the one that leaves most rows told
+        differences = [_divided(own, points.tolist()) for own in values.tolist()]
+        start = values[:, :1]
         ways = np.multiply.accumulate(rows - points[:-1, None], axis=0, dtype=np.float64)
-        terms = np.array(first)[:, :, None] * ways[:, None, :]
+        terms = np.array(differences).T[:, :, None] * ways[:, None, :]
         moved = np.add.accumulate(terms, axis=0)
         small = np.maximum(
             tolerances.SMOOTH_STEP * np.abs(moved).max(axis=1), tolerances.REST_SMALL
@@ -371,6 +368,18 @@ class Stretches:
             np.array(pushes),
             np.asarray(found.good.reshape(kinds, places).all(axis=0)),
         )
+
+
+def _divided(values: list[float], points: list[int]) -> list[float]:
+    """Newton's divided differences of values at some points, from the first order on."""
+    found = []
+    for k in range(1, len(points)):
+        values = [
+            (values[i + 1] - values[i]) / (points[i + k] - points[i])
+            for i in range(len(values) - 1)
+        ]
+        found.append(values[0])
+    return found
 
 
 def _leading(good: Bools) -> int:
