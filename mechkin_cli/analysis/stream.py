@@ -19,7 +19,6 @@ from mechkin_cli.analysis.analysis import Analysis, by_label
 from mechkin_cli.arguments import a_text
 from mechkin_cli.assembly import rows_of_start
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism import LEDGER_KINDS
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.response import ResponseResult
 from mechkin_cli.row_notes import Notes
@@ -68,13 +67,6 @@ class Stream:
         self.wanted = wanted or Beside()
         self._beside: _FoundBeside | None = None
         self.source = source
-        if isinstance(source, Sweep) and has_parts(source.session):
-            whole = [each.name for each in source.asked if each.kind in LEDGER_KINDS]
-            if whole:
-                raise UsageError(
-                    f"{whole[0]} of a row depends on all rows of the run, which are not held here; "
-                    "leave out the tables that read it, or take all rows at once"
-                )
         self._verdicts = RunVerdicts()
         self._notes = Notes(0)
         self.branch = "", ""

@@ -17,7 +17,7 @@ from mechkin_cli.cli.messages import put, say
 from mechkin_cli.cli.progress import clock
 from mechkin_cli.cli.show import shown_ends, shown_summary, streamed_summary
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism import LEDGER_KINDS, LongRun
+from mechkin_cli.mechanism import LongRun
 from mechkin_cli.record import replace
 from mechkin_cli.tables import (
     STREAM_FORMATS,
@@ -77,7 +77,7 @@ def streamed_runs(model: Model, command: AnalyzeCommand) -> list[str]:
         return [run for run in _wanted_runs(model, command) if not _rests(model, run)]
     if needing or not command.asked_formats:
         return []
-    return [run for run in _wanted_runs(model, command) if _is_long(model, run, command)]
+    return [run for run in _wanted_runs(model, command) if _is_long(model, run)]
 
 
 def _wanted_runs(model: Model, command: AnalyzeCommand) -> list[str]:
@@ -93,23 +93,14 @@ def _rests(model: Model, run: str) -> bool:
     return run != SWEEP and model.design.response(run).search is not None
 
 
-def _is_long(model: Model, run: str, command: AnalyzeCommand) -> bool:
+def _is_long(model: Model, run: str) -> bool:
     """Whether the rows of a run are many, and may be taken block by block."""
     if _rests(model, run):
         return False
     if run != SWEEP:
         rows = model.design.response(run).rows
         return rows > LONG_RUN and stream_run(model, run, None, 1, [], None, 0, 0).in_blocks
-    is_long = isinstance(model.problem.motion, LongRun)
-    return is_long and not _reads_all_rows(model, command)
-
-
-def _reads_all_rows(model: Model, command: AnalyzeCommand) -> bool:
-    """Whether energies of the whole run are among what is wanted."""
-    known = model.problem.quantities()
-    tables = chosen(tuple(table for table in model.tables if table.run == SWEEP), command.table)
-    names = {name for table in tables for one in table.columns for name in one.expression.names}
-    return any(name in known and known[name].kind in LEDGER_KINDS for name in names)
+    return isinstance(model.problem.motion, LongRun)
 
 
 class StreamedRun:

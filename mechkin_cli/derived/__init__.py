@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from mechkin_cli.derived.basis import *
     from mechkin_cli.derived.coefficients import *
     from mechkin_cli.derived.columns import *
+    from mechkin_cli.derived.ledger import *
     from mechkin_cli.derived.quadrature import *
 
 __getattr__, __dir__ = lazy_names(
@@ -19,6 +20,7 @@ __getattr__, __dir__ = lazy_names(
         "coefficients": "GRAVITY effort_powers friction_power load_powers_along power_against "
         "unloaded",
         "columns": "derived_columns",
+        "ledger": "LedgerRows RunningLedger largest_power needs_largest_power",
         "quadrature": "CycleIntegral RunningTotal largest_between mean running_integral_of_cycle",
     },
 )

@@ -43,6 +43,7 @@ from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, TIME, VELOCIT
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.mechanism import Span
     from mechkin_cli.session import KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
 
@@ -75,6 +76,11 @@ class RowStates(Protocol):
     @property
     def turns(self) -> Floats:
         """Turns of cut joints (turn slots, rows)."""
+        ...
+
+    @property
+    def span(self) -> Span:
+        """Where they lie in the run that they are a part of."""
         ...
 
     @property

@@ -53,7 +53,8 @@ from mechkin_cli.derived.basis import (
     turn,
     vector_of,
 )
-from mechkin_cli.derived.coefficients import coefficients, ledger
+from mechkin_cli.derived.coefficients import coefficients
+from mechkin_cli.derived.ledger import ledger
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
     FINITE_KINDS,

@@ -225,6 +225,18 @@ class MotionInputs(NamedTuple):
     leader: int | None = None
     rest: Rest | None = None
 
+    @property
+    def without_numbers(self) -> MotionInputs:
+        """The inputs of a part by their names, and whether there is time."""
+        none = np.empty(0)
+        items = tuple(
+            DrivenInput(item.joint, item.coordinate, none, none, none, none, np.empty((4, 0)))
+            for item in self.inputs
+        )
+        time = None if self.time is None else Moments(none, none)
+        leader = self.leading_number
+        return MotionInputs(items, 0, time, span=self.span, leader=leader, rest=self.rest)
+
     def part(self, first: int, last: int) -> MotionInputs:
         """The rows from `first` to `last`, both included, of a motion that is no grid."""
         assert self.grid is None

@@ -223,7 +223,11 @@ class Problem:
     def _quantities(self) -> Mapping[str, Wanted]:
         if self._alike is not None:
             return self._alike.quantities()
-        return Catalogue(self._quantities_of, self._coordinates_of)
+        if self.motion.span is None:
+            return Catalogue(self._quantities_of, self._coordinates_of)
+        # a catalogue holds what it is of: the numbers of a part's rows go with their part
+        held = replace(self, motion=self.motion.without_numbers)
+        return Catalogue(held._quantities_of, held._coordinates_of)
 
     @cached_property
     def _elements(self) -> ElementsByName:

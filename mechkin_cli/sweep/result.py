@@ -394,9 +394,17 @@ class Result:
         if plain:
             self._read_plain(plain)
         if later:
-            between = None if self._between is None else self._between(self)
-            run = derived.BasisQuantities(self, self._columns, self.session.inputs, between)
-            self._columns |= derived.derived_columns(run, later)
+            self._columns |= derived.derived_columns(self.basis, later)
+
+    @property
+    def basis(self) -> derived.BasisQuantities:
+        """What derived quantities are computed from."""
+        between = None if self._between is None else self._between(self)
+        return derived.BasisQuantities(self, self._columns, self.session.inputs, between)
+
+    def take(self, columns: Columns) -> None:
+        """Takes quantities of these rows that go by those of the run before and behind them."""
+        self._columns |= columns
 
     def _read_plain(self, wanted: list[Wanted]) -> None:
         demand = demand_of(self.problem.mechanism, wanted)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import idle, tolerances
+from mechkin_cli import derived, idle, tolerances
 from mechkin_cli.assembly import choose_start, rows_of_start
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import (
@@ -51,6 +52,7 @@ from mechkin_cli.verdict import Status, are, by_condition, rates_are_clear
 
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.derived import LedgerRows
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import DrivenInput, Problem, Wanted
     from mechkin_cli.row_notes import Note
@@ -206,7 +208,7 @@ class Sweep:
             yield Part(result, slice(0, result.rows))
             return
         first: FirstRow | None = None
-        for part in parts_of(self.session, self.start, self._judged):
+        for part in self._with_energies():
             rows = part.result.row_states
             if rows.span.first == 0:
                 first = first_row(rows_of_start(self.session)[0], rows)
@@ -215,6 +217,57 @@ class Sweep:
             # only the first whole turn is told
             first = None if note else first
             yield part
+
+    @property
+    def _energies(self) -> list[Wanted]:
+        """Those asked for that depend on all rows before a row."""
+        return [each for each in self.question[0] if each.kind in LEDGER_KINDS]
+
+    def _with_energies(self) -> Iterator[Part]:
+        """The parts of the run with what depends on the rows before them, and behind them."""
+        wanted = self._energies
+        if not wanted:
+            yield from parts_of(self.session, self.start, self._judged)
+            return
+        measured = any(each.kind == "ledger_energy_error" for each in wanted)
+        size = self._largest_energy if measured else 0.0
+        for part, rows in self._ledgers():
+            begin, end, _ = part.own.indices(part.result.rows)
+            found = rows.columns(size)
+            for each in wanted:
+                column = np.full((1, part.result.rows), np.nan)
+                column[0, begin:end] = found[each.kind.removeprefix("ledger_")]
+                part.result.take({each.name: column})
+            yield part
+
+    def _ledgers(self) -> Iterator[tuple[Part, LedgerRows]]:
+        """The parts of the run with their energies: a part waits until those rows of the next one
+        are known that its last intervals are read from."""
+        ledger = derived.RunningLedger(self.session, self._largest_power)
+        waiting: deque[Part] = deque()
+        for part in parts_of(self.session, self.start, self._judged):
+            waiting.append(part)
+            for rows in ledger.add(part.result.basis, part.own):
+                yield waiting.popleft(), rows
+
+    @cached_property
+    def _largest_power(self) -> float:
+        """Of all rows, W, where integrals are made to errors in parts of it: the run is made to
+        tell."""
+        largest = 0.0
+        if not self.session.problem.mechanism.frictions:
+            return largest
+        for part in parts_of(self.session, self.start, self._judged):
+            run = part.result.basis
+            if not derived.needs_largest_power(run):
+                break
+            largest = max(largest, derived.largest_power(run, part.own))
+        return largest
+
+    @cached_property
+    def _largest_energy(self) -> float:
+        """Of all rows, J, in parts of which the error of energies is: the run is made to tell."""
+        return max((rows.size for _, rows in self._ledgers()), default=0.0)
 
     def _judged(self, session: Session, start: AssemblyStart, rows: SweepRows | None) -> Result:
         """The rows of a session, which is all of the run or a part, on the branch through a first

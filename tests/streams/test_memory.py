@@ -31,6 +31,18 @@ responses: {{swing: {{start: {{O.theta: 1}}, time: {{from: 0, to: 3, count: {cou
 tables:
   - {{name: t, run: swing, columns: [O.theta], summary: [max, mean]}}
 """
+RUBBING = """format: 1
+links: {{block: {{mass: 2, center_of_mass: [0, 0, 0]}}}}
+joints: {{D: {{type: R, links: [ground, block], point: [0, 0, 0], axis: [0, 0, 1]}}}}
+motion:
+  time: {{from: 0, to: 2, count: {count}}}
+  inputs: {{D.theta: {{with: "30 deg*sin(180 deg/s*time + 30 deg)"}}}}
+loads:
+  - {{type: gravity, g: [0, -9.81, 0]}}
+  - {{type: friction, joint: D, coefficient: 0.1, radius: 10 mm}}
+balances: [{{name: work, type: work}}]
+tables: [{{name: t, columns: [row.work, row.dissipated, row.energy_error], summary: [max]}}]
+"""
 CHILD = """
 import resource, sys
 limit = int(sys.argv[1])
@@ -87,3 +99,10 @@ def test_responses_hold_no_moments(tmp_path: Path) -> None:
     few, many = (peaks_of(tmp_path, count, 0, PENDULUM)[1] for count in (200_000, 4_000_000))
     # the moments alone, in two units, would take 64 MB
     assert many < few + 20_000_000
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_energies_and_balances_hold_no_rows(tmp_path: Path) -> None:
+    few, many = (peaks_of(tmp_path, count, 0, RUBBING)[1] for count in (100_000, 500_000))
+    # held rows would take 100 bytes each at least
+    assert many < few + 15_000_000
