@@ -5,7 +5,6 @@ The file's own design comes from `building`; `variants` derives designs with oth
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from functools import cache, cached_property
 from pathlib import Path
@@ -159,6 +158,8 @@ def _from_text(
 ) -> Design:
     """A design of the text that another had, or of the data that its text was made from."""
     if is_data:
+        import json
+
         source = building.open_data(json.loads(text), file, overrides, folder, tables)
     else:
         source = building.open_text(text, file, overrides, folder, tables)
