@@ -265,23 +265,25 @@ inline void aim_frictions(const Plan& p, Workspace& w, bool accelerating, Pack r
   }
 }
 
-// Friction onto the links, and what all joints transmit; every other load has been applied.
-inline void apply_friction(Balance& balance, bool accelerating, int shift) {
+// What friction is solved from; every other load has been applied.
+inline void prepare_friction(Balance& balance, bool accelerating, int shift) {
+  balance.w.rubbing.rates = twist_level(balance.p, balance.w);
+  aim_frictions(balance.p, balance.w, accelerating, balance.w.rubbing.rates);
+  apply_told(balance);
+  find_gains(balance, shift);
+}
+// Friction that is solved onto the links, and what all joints transmit.
+inline void apply_friction(Balance& balance, int shift) {
   const Plan& p = balance.p;
   Workspace& w = balance.w;
   Rubbing& r = w.rubbing;
-  const Pack rates = twist_level(p, w);
-  aim_frictions(p, w, accelerating, rates);
-  apply_told(balance);
-  find_gains(balance, shift);
-  solve_friction(p, r);
   mark_open(p, r);
   judge_friction(p, r, balance.level);
   for (int k = 0; k < p.links; ++k) w.carried[k] = r.applied[k];
   for (int k = 0; k < p.frictions; ++k) rub(balance, k, r.force[k]);
   add_told(p, r);
   distribute(p, w, shift);
-  r.self_locking = self_locking(r, p.inputs, w.effort, Pack(NOTHING_WORKS) * balance.level * rates,
+  r.self_locking = self_locking(r, p.inputs, w.effort, Pack(NOTHING_WORKS) * balance.level * r.rates,
                                 [&](int i) { return w.rate[p.input_column[i]]; });
 }
 

@@ -25,6 +25,7 @@ struct Rubbing {
   bool is_told;
   Pack* share;         // frictions: six vectors of rest_share.hpp
   Pack level;          // the largest reaction without friction
+  Pack rates;          // the mechanism's largest
   Pack softness;       // of magnitudes of loads, zero but on the way to a start (friction_solver.hpp)
   Pack self_locking;
 };
