@@ -70,6 +70,7 @@ inline void place_contacts(const Plan& p, const Workspace& w) {
     const JointPlace& j = p.place[f.place];
     r.axis[k] = f.course < 0 ? carried_vector(w, f.link, f.axis) : course_axis(p, w, f.course);
     r.point[k] = carried_point(w, j.point_on, j.point);
+    for (int d = j.drive_begin; d < j.drive_end; ++d) r.effort_along[d] = along_coordinate(p, w, p.drive[d].axis, Pack(1.0));
     for (int c = f.contact_begin; c < f.contact_end; ++c)
       if (p.contact[c].code == CONTACT_ALONG)
         r.direction[c] = f.course < 0 ? carried_vector(w, f.link, p.contact[c].direction) : r.axis[k];
@@ -115,7 +116,10 @@ inline void read_contacts(const Plan& p, const Workspace& w, Vec3* out, int stri
   const Rubbing& r = w.rubbing;
   for (int k = 0; k < p.frictions; ++k) {
     const Friction& f = p.friction[k];
-    const Wrench by = joint_wrench(p, w, p.place[f.place]);
+    const JointPlace& j = p.place[f.place];
+    Wrench by = transmitted_wrench(w, j);
+    for (int d = j.drive_begin; d < j.drive_end; ++d)
+      by -= (Pack(p.drive[d].scale) * w.effort[p.drive[d].input]) * r.effort_along[d];
     if (f.contact_end == f.contact_begin + 1 && p.contact[f.contact_begin].code == CONTACT_TOTAL) {
       out[f.contact_begin * stride] = Pack(p.contact[f.contact_begin].share) * by.force;
       continue;

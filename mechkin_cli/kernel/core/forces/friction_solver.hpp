@@ -55,6 +55,19 @@ MECHKIN_INLINE void bound_friction(const Plan& p, const Rubbing& r, Size&& size)
     }
 }
 
+// Not below the sum of row k of L.
+template <int N>
+MECHKIN_INLINE Pack coarse_bound(const Plan& p, const Rubbing& r, int k) {
+  const int n = N ? N : p.frictions;
+  Pack bound = 0.0;
+  for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+    Pack sum = 0.0;
+    for (int j = 0; j < n; ++j) sum += sum_of_components(r.gain[c * n + j]);
+    bound += Pack(p.contact[c].weight) * sum;
+  }
+  return r.coefficient[k] * bound;
+}
+
 // Friction k where L w < w.
 MECHKIN_INLINE Mask contracts(const Rubbing& r, int n, int k, const Pack* weight) {
   Pack sum = 0.0;
@@ -109,9 +122,12 @@ template <int N>
 inline void prove_unique(const Plan& p, const Rubbing& r) {
   const int n = N ? N : p.frictions;
   for (int k = 0; k < n; ++k) r.weight[k] = 1.0;
-  // by a bound without roots first, which mostly does
-  bound_friction<N>(p, r, [](const Vec3& a) { return above_magnitude(a); });
+  // by a bound without roots first, and where contacts carry so little of friction that a coarse one mostly does
   Mask plainly = all_lanes(true), weighed = all_lanes(true);
+  for (int k = 0; k < n; ++k) plainly = plainly & (coarse_bound<N>(p, r, k) <= Pack(1.0 - CONTRACTION_MARGIN));
+  if (all(plainly)) return;
+  bound_friction<N>(p, r, [](const Vec3& a) { return above_magnitude(a); });
+  plainly = all_lanes(true);
   for (int k = 0; k < n; ++k) plainly = plainly & contracts(r, n, k, r.weight);
   if (all(plainly)) return;
   weigh(p, r);
@@ -236,7 +252,7 @@ struct FrictionSearch {
   Mask done;
   bool over = false;
   // each lane tries a length of Newton's step from `origin`; that of zero stands for z := mu N(z)
-  Mask moved = all_lanes(false);
+  Mask moved = all_lanes(false), solved = all_lanes(false);
   Pack before = __builtin_inf(), length = 0.0;
 
   // Whether lanes go on by Newton's step.
@@ -250,6 +266,7 @@ struct FrictionSearch {
     done = done | (back & (before <= Pack(FRICTION_STALLED) * now.scale));
     done = done | ~(now.left < Pack(__builtin_inf()));  // nothing to hope for
     moved = back;
+    solved = ~back & (now.left <= Pack(FRICTION_ACCEPT) * now.scale);
     const Mask shorter = back & (length > Pack(FRICTION_SHORTEST)) & ~done;
     const Mask plain = back & ~shorter;
     length = select(shorter, Pack(0.5) * length, Pack(1.0));
@@ -338,7 +355,9 @@ inline void start_friction(const Plan& p, Rubbing& r) {
 }
 // What Newton's method has not found is sought once more from another start.
 template <int N>
-inline void judge_solution(const Plan& p, Rubbing& r) {
+inline void judge_solution(const Plan& p, const FrictionSearch& found) {
+  if (all(found.solved)) return;
+  Rubbing& r = found.r;
   LeftOver last = left_over<N>(p, r);
   Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   if (all(solved)) return;
@@ -360,7 +379,7 @@ inline void solve_sized_friction(const Plan& p, Rubbing* const* r, int count) {
   for (int k = 0; k < count; ++k) start_friction<N>(p, *r[k]);
   FrictionSearch pack[] = {{*r[0], all_lanes(false)}, {*r[count - 1], all_lanes(false)}};
   iterate_friction<N>(p, pack, count);
-  for (int k = 0; k < count; ++k) judge_solution<N>(p, *r[k]);
+  for (int k = 0; k < count; ++k) judge_solution<N>(p, pack[k]);
 }
 inline void solve_frictions(const Plan& p, Rubbing* const* r, int count) {
   if constexpr (SIZED_BLOCKS) {
