@@ -234,7 +234,6 @@ def build_inputs(
         rows = sampled(run_rows)
     if rows is None and has_too_many_rows(fields, path, run_rows, per_row):
         return None
-    grid: tuple[int, int] | None
     if pair and rows is not None:
         orders, grid = _some_pairs(read, pair, rows)
     else:
@@ -453,7 +452,7 @@ def _all_pairs(orders: dict[str, Floats], grid: Sequence[str]) -> tuple[int, int
 
 def _some_pairs(
     read: Mapping[str, _Read], grid: Sequence[str], rows: NDArray[np.int64]
-) -> tuple[dict[str, Floats], tuple[int, int]]:
+) -> tuple[dict[str, Floats], tuple[int, int] | None]:
     """The values of inputs in some rows of a grid; how many values each of its two has."""
     slow, fast = grid
     width = read[fast].rows
