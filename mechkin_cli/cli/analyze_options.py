@@ -89,7 +89,7 @@ def with_labels(command: AnalyzeCommand, model: Model) -> AnalyzeCommand:
     one of them.
 
     Raises:
-        UsageError: no table has a column of a label.
+        UsageError: no table has a column of a label, or there is no label.
     """
     if command.columns is None:
         return command
@@ -102,7 +102,12 @@ def with_labels(command: AnalyzeCommand, model: Model) -> AnalyzeCommand:
     for text in command.columns:
         # as the header of CSV is written, since a label may have a comma
         cells = [text] if text in known else next(csv.reader([text], skipinitialspace=True), [])
+        if text.count('"') % 2 and text not in known:
+            raise UsageError(f"--columns: {text[:LONGEST_NAME]} has a quote that does not end")
         asked += [cell if cell in known else cell.strip() for cell in cells]
+    if not asked:
+        some = ", ".join([*known][:MOST_LABELS])
+        raise UsageError(f"--columns: no label is given; columns are {some}")
     for label in asked:
         if label not in known:
             some = [*list(known)[:MOST_LABELS], *(["..."] if len(known) > MOST_LABELS else [])]

@@ -4,14 +4,16 @@ A printed number states a value to within half a unit of its last digit. A cell 
 computed number lies within that half unit, both ends included: the printed number is then the
 computed one, rounded; at a tie both neighbours are. Beyond that and up to one and a half units it
 is one off in the last digit. Computed numbers are taken with the twelve digits of committed
-tables, which the last bits of a double do not reach, so that a tie is a tie. A column that is zero
-throughout, in print and computed, says nothing of the numbers: its cells are counted apart.
+tables, which the last bits of a double do not reach, so that a tie is a tie; what is printed with
+more is compared with twelve. A column that is zero throughout, in print and computed, says nothing
+of the numbers: its cells are counted apart.
 
 In reading order: table files as text (cells stay the text of the file, so that a comparison sees
 what a reader sees), printed values, the comparison. Printed values are a CSV file with the digits
-as the source prints them: labels of the table first, of which the first finds rows again; a cell's
-text carries its precision (`1.30` is printed to 0.01), an empty one is a value that the source does
-not have or that cannot be read.
+as the source prints them: labels of the table first, of which the first finds rows again, the one
+nearest to the printed value among those that it is the rounded value of; a cell's text carries its
+precision (`1.30` is printed to 0.01), an empty one is a value that the source does not have or that
+cannot be read.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
 from functools import cached_property
@@ -185,8 +187,9 @@ class PrintedCell:
 
     @property
     def unit(self) -> Decimal:
-        """One unit of the last printed digit."""
-        return Decimal(1).scaleb(int(self.printed.as_tuple().exponent))
+        """One unit of the last printed digit, of the twelfth where there are more."""
+        exponent = int(self.printed.as_tuple().exponent)
+        return Decimal(1).scaleb(max(exponent, self.printed.adjusted() - COMMITTED_DIGITS + 1))
 
     @property
     def difference(self) -> Decimal:
@@ -273,6 +276,8 @@ def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None
             if text is not None and value is None:
                 without_value += 1
             elif text is not None and value is not None:
+                if _is_longer(text):
+                    value = _shortest(columns[label], row)
                 cells.append(PrintedCell(row + 1, found, label, text, value, label in zeros))
     others = tuple(label for label in labels if label not in computed)
     return TableAgreement(tuple(cells), without_row, without_value, others, key)
@@ -310,21 +315,46 @@ def _paired(
                 f"the column {key!r} finds the rows, and {who} has no "
                 f"such column of numbers; its labels are {', '.join(labels)}"
             )
+    exact = _exact(columns[key])
     values = _decimals(columns[key])
+    asked = Counter(row[key] for row in rows)
     by_exponent: dict[int, dict[Decimal, list[int]]] = {}  # rows by their rounded value
+    nearest: dict[Decimal, list[int]] = {}
     for row in rows:
         value = row[key]
         if value is None:
             yield None, None, row
             continue
-        exponent = int(value.as_tuple().exponent)
-        if exponent not in by_exponent:
-            by_exponent[exponent] = _rows_by_rounded(values, exponent)
-        places = by_exponent[exponent].get(value)
+        if value not in nearest:
+            # one that is printed again and again stands in several rows, in their order
+            near = _near(value, exact, values, by_exponent)
+            nearest[value] = sorted(near[: asked[value]])
+        places = nearest[value]
         yield value, places.pop(0) if places else None, row
 
 
-def _rows_by_rounded(values: list[Decimal | None], exponent: int) -> dict[Decimal, list[int]]:
+def _near(
+    printed: Decimal,
+    exact: Sequence[Decimal],
+    values: Sequence[Decimal | None],
+    by_exponent: dict[int, dict[Decimal, list[int]]],
+) -> list[int]:
+    """The rows whose value rounds to a printed one, the nearest first."""
+    rounded, apart = printed, [0]
+    if _is_longer(printed):
+        # the last digit may have been rounded twice
+        rounded, apart = _TWELVE.plus(printed), [-1, 0, 1]
+    exponent = int(rounded.as_tuple().exponent)
+    if exponent not in by_exponent:
+        by_exponent[exponent] = _rows_by_rounded(values, exponent)
+    unit = Decimal(1).scaleb(exponent)
+    keys = (_WIDE.add(rounded, units * unit) for units in apart)
+    rows = [row for key in keys for row in by_exponent[exponent].get(key, ())]
+    off = {row: abs(_WIDE.subtract(exact[row], printed)) for row in rows}
+    return sorted((row for row in rows if off[row] <= unit), key=off.__getitem__)
+
+
+def _rows_by_rounded(values: Sequence[Decimal | None], exponent: int) -> dict[Decimal, list[int]]:
     unit, rows = Decimal(1).scaleb(exponent), defaultdict(list)
     for row, value in enumerate(values):
         if value is not None:
@@ -332,8 +362,22 @@ def _rows_by_rounded(values: list[Decimal | None], exponent: int) -> dict[Decima
     return rows
 
 
+def _exact(column: TableColumn) -> list[Decimal]:
+    assert not isinstance(column.values, Words)
+    return [Decimal(value) for value in column.values.tolist()]
+
+
+def _shortest(column: TableColumn, row: int) -> Decimal:
+    """A computed number with the shortest digits that are its own."""
+    assert not isinstance(column.values, Words)
+    return Decimal(repr(float(column.values[row])))
+
+
+def _is_longer(printed: Decimal) -> bool:
+    """Whether a number is printed with more digits than computed ones are compared with."""
+    return len(printed.as_tuple().digits) > COMMITTED_DIGITS
+
+
 def _decimals(column: TableColumn) -> list[Decimal | None]:
     """Each value with twelve digits; None where it is no number."""
-    assert not isinstance(column.values, Words)
-    found = (Decimal(value) for value in column.values.tolist())
-    return [_TWELVE.plus(value) if value.is_finite() else None for value in found]
+    return [_TWELVE.plus(value) if value.is_finite() else None for value in _exact(column)]

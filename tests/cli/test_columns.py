@@ -133,3 +133,13 @@ def test_a_run_in_another_format_removes_the_files_of_the_first(mechkin, write, 
     assert names(folder / "out/crank") == ["drive.csv.zst", "rows.csv.zst", "tip.csv.zst"]
     assert "rows.csv.gz" in run.err
     assert "rows.arrow" in run.err
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [("", "no label is given; columns are "), ('"x', '"x has a quote that does not end')],
+)
+def test_columns_that_name_nothing_are_refused(mechkin, columns, words) -> None:
+    run = mechkin("analyze", RCSR, "--columns", columns)
+    assert run.code == 2
+    assert f"--columns: {words}" in run.err

@@ -129,3 +129,31 @@ def test_columns_that_one_side_lacks():
 def test_the_first_printed_column_must_be_one_of_the_table():
     with pytest.raises(ValueError, match="'q' finds the rows, and table t has no such column"):
         agreement(table(x=[1]), printed("q,x\n1,1"))
+
+
+@pytest.mark.parametrize("count", [11, 1001, 10_001])
+def test_the_nearest_of_the_rows_that_round_to_a_printed_key_is_found(count):
+    times = np.linspace(0.0, 10.0, count).tolist()
+    found = agreement(table(t=times, y=[5 * t for t in times]), printed("t,y\n1.0,5\n5.0,25.0"))
+    assert [times[cell.row - 1] for cell in found.cells] == [1.0, 5.0]
+    assert found.agreeing == 2
+
+
+def test_a_key_that_is_printed_twice_finds_both_passes_in_their_order():
+    times = [4.97, 5.04, 6.0, 5.04, 5.01]
+    found = agreement(table(t=times, y=[1, 2, 3, 4, 5]), printed("t,y\n5.0,1\n6.0,3\n5.0,5"))
+    assert [cell.row for cell in found.cells] == [1, 3, 5]
+
+
+@pytest.mark.parametrize("digits", range(12, 18))
+def test_keys_and_values_with_all_digits_of_a_double_are_found_and_agree(digits):
+    times = [7.0 * k / 97.0 for k in range(98)]
+    values = [np.sin(t) for t in times]
+    lines = (f"{t:.{digits}g},{y:.{digits}g}" for t, y in zip(times, values, strict=True))
+    found = agreement(table(t=times, y=values), printed("t,y\n" + "\n".join(lines)))
+    assert (len(found.cells), found.agreeing, found.without_row) == (98, 98, 0)
+
+
+def test_more_than_twelve_digits_are_compared_with_twelve():
+    assert one_cell(1 / 3, "0.33333333333333337").agreeing == 1
+    assert one_cell(1 / 3, "0.33333333333444444").one_off == 1
