@@ -28,6 +28,7 @@ from mechkin_cli.building.joints import Halves, parts_of
 from mechkin_cli.building.rest import resting
 from mechkin_cli.building.spacing import (
     Spacing,
+    fit_lines,
     has_too_many_rows,
     is_long,
     sampled,
@@ -106,6 +107,8 @@ def build_motion(
             return motion
         if motion.rest is not None:
             return _whole_at_rest(fields, section, joints, per_row, motion.span.run_rows)
+        if motion.grid is not None and not fit_lines(fields, motion.grid, per_row):
+            return MotionInputs((), 1)
         rows, build = sampled(motion.span.run_rows), _rows_of(fields, section, joints)
         return long_motion(motion._replace(span=None), rows, build, MOST_NUMBERS // per_row)
     fields.failed.add(SWEEP)
@@ -213,12 +216,18 @@ def build_inputs(
         return None
     if rows is None and clock is not None:
         rows = clock.numbers
-    elif rows is None and not pair and is_long(run_rows, per_row):
+    elif rows is None and is_long(run_rows, per_row):
+        if has_too_many_rows(fields, path, run_rows, None):
+            return None
         rows = sampled(run_rows)
     if rows is None and has_too_many_rows(fields, path, run_rows, per_row):
         return None
-    orders = {name: one.at(rows) for name, one in read.items()}
-    grid = _all_pairs(orders, pair)
+    grid: tuple[int, int] | None
+    if pair and rows is not None:
+        orders, grid = _some_pairs(read, pair, rows)
+    else:
+        orders = {name: one.at(rows) for name, one in read.items()}
+        grid = _all_pairs(orders, pair)
     count = run_rows if rows is None else rows.size
     span = None if rows is None else Span(int(rows[0]), count, run_rows)
     expressions: dict[str, Expression] = {}
@@ -428,6 +437,18 @@ def _all_pairs(orders: dict[str, Floats], grid: Sequence[str]) -> tuple[int, int
     orders[slow] = np.repeat(orders[slow], shape[1], axis=1)
     orders[fast] = np.tile(orders[fast], (1, shape[0]))
     return shape
+
+
+def _some_pairs(
+    read: Mapping[str, _Read], grid: Sequence[str], rows: NDArray[np.int64]
+) -> tuple[dict[str, Floats], tuple[int, int]]:
+    """The values of inputs in some rows of a grid; how many values each of its two has."""
+    slow, fast = grid
+    width = read[fast].rows
+    places = {slow: rows // width, fast: rows % width}
+    orders = {name: one.at(places.get(name, rows)) for name, one in read.items()}
+    counted = {name: np.broadcast_to(orders[name], (4, rows.size)) for name in grid}
+    return orders | counted, (read[slow].rows, width)
 
 
 def _row_count(fields: Fields, grid: Sequence[str], columns: Mapping[str, _Read]) -> int:

@@ -61,7 +61,6 @@ class LongRun:
     `long_motion`."""
 
     span = None
-    grid = None
 
     def __init__(
         self, sample: MotionInputs, rows: NDArray[np.int64], build: Build, most_rows: int
@@ -69,6 +68,8 @@ class LongRun:
         self.sample, self.sampled, self.most_rows = sample, rows, most_rows
         self._build = build
         self.rows = int(rows[-1]) + 1
+        self.grid = sample.grid
+        self.sample = sample._replace(grid=None)
         self.leader = sample.leading_number
         self.paths, self.constraints = sample.paths, sample.constraints
         self.unrated, self.driven = sample.unrated, sample.driven
@@ -87,7 +88,16 @@ class LongRun:
 
     def at(self, rows: NDArray[np.int64]) -> MotionInputs:
         """The motion in some rows, by their numbers, which rise."""
-        return self._build(rows)._replace(leader=self.leader)
+        return self._build(rows)._replace(leader=self.leader, grid=self._lines_of(rows))
+
+    def _lines_of(self, rows: NDArray[np.int64]) -> tuple[int, int] | None:
+        """The grid of some rows that are whole lines of one; else None."""
+        if self.grid is None:
+            return None
+        first, last, (_, width) = int(rows[0]), int(rows[-1]), self.grid
+        is_whole = first % width == 0 and (last + 1) % width == 0
+        are_all = last - first + 1 == rows.size
+        return (rows.size // width, width) if is_whole and are_all else None
 
     def part(self, first: int, last: int) -> MotionInputs:
         """The rows from `first` to `last`, both included."""

@@ -126,8 +126,11 @@ class _Lines:
                 row = found
         from mechkin_cli.sweep.branch_end import without_repeats
 
+        span = self.rows.span
         ends = [one for one in self.rows.diagnostics if isinstance(one, Diagnostic)]
-        self.rows.diagnostics = [*without_repeats(ends)]
+        if span.rows == span.run_rows:  # else they are counted with those of all parts
+            ends = [*without_repeats(ends)]
+        self.rows.diagnostics = [*ends]
         return self.rows
 
     def _along(self, row: int, state: Floats, turn: Floats | None) -> None:

@@ -20,6 +20,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import LongRun
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
@@ -85,14 +86,19 @@ def part_rows(session: Session) -> int:
 
 
 def has_parts(session: Session) -> bool:
-    """Whether a run has several parts: it is long, and has not the pairs of a grid."""
+    """Whether a run has several parts: it is long, and the numbers of its rows are made as they are
+    wanted where they are the pairs of a grid."""
     motion = session.problem.motion
-    return motion.grid is None and motion.rows > tolerances.WHOLE_PARTS * part_rows(session) + 1
+    if motion.grid is not None and not isinstance(motion, LongRun):
+        return False
+    return motion.rows > tolerances.WHOLE_PARTS * part_rows(session) + 1
 
 
 def parts_of(session: Session, start: AssemblyStart, judge: Judge) -> Iterator[Part]:
     """The parts of a long run in the order of its rows."""
-    return _Walk(session, start, part_rows(session), judge).parts()
+    if session.problem.motion.grid is None:
+        return _Walk(session, start, part_rows(session), judge).parts()
+    return _WalkOfLines(session, start, part_rows(session), judge).parts()
 
 
 class _Walk:
@@ -207,6 +213,121 @@ class _Walk:
             part = self.session.part(row, min(row + self.size - 1, last))
             result = self.judge(part, start, None)
             yield Part(result, slice(0, result.rows))
+
+
+class _WalkOfLines(_Walk):
+    """Goes along the lines of a grid: parts are some of them, and neighbouring parts share one."""
+
+    def __init__(self, session: Session, start: AssemblyStart, size: int, judge: Judge) -> None:
+        grid = session.problem.motion.grid
+        assert grid is not None
+        self.lines, self.width = grid
+        self.ahead = max(size // self.width, 1)  # lines of a part behind its first
+        super().__init__(session, start, self.ahead * self.width, judge)
+
+    def parts(self) -> Iterator[Part]:
+        """All parts."""
+        start = self.start
+        if start.state is None:
+            yield from self._empty(0, self.last, start.status)
+            return
+        border = _Border(start.row, start.state)
+        line = start.row // self.width
+        if line > 0:
+            borders, lost = self._back_from(border)
+            first = self._first_of(borders[-1])
+            if lost is not None and first > 0:
+                yield from self._empty(0, first * self.width - 1, lost)
+            signs: Mapping[str, float] = {}
+            for one in reversed(borders):
+                last = one.row // self.width
+                part, begin = self._of_lines(one._replace(signs=signs), first, last)
+                result = self.judge(part, begin, None)
+                yield Part(result, slice(0, result.rows - self.width))
+                signs, first = self._signs_of_line(result, last - first), last
+                del part, result
+            border = borders[0]._replace(signs=signs)
+        yield from self._onward(border)
+
+    def _onward(self, border: _Border) -> Iterator[Part]:
+        """The parts from the line of a border to the last line."""
+        line = border.row // self.width
+        done = line * self.width - 1
+        while done < self.last:
+            end = min(line + self.ahead, self.lines - 1)
+            part, begin = self._of_lines(border, line, end)
+            result = self.judge(part, begin, None)
+            yield Part(result, slice(done + 1 - line * self.width, result.rows))
+            done = (end + 1) * self.width - 1
+            found = self._border_in(result, line, end, border.row)
+            if found is None:
+                yield from self._empty(done + 1, self.last, Status(int(result.status[-1])))
+                return
+            border, line = found, end
+            del part, result
+
+    def _back_from(self, border: _Border) -> tuple[list[_Border], Status | None]:
+        """The borders from that of the first assembly back, with turns that count from the first
+        row; the status of the lines before those of the last border, if these are not reached."""
+        borders: list[_Border] = []
+        while True:
+            line = border.row // self.width
+            first = self._first_of(border)
+            part, begin = self._of_lines(border, first, line)
+            rows = follow_rows(part, begin)
+            if border.turn is None:
+                place = border.row - first * self.width
+                border = border._replace(turn=np.ascontiguousarray(rows.turns[:, place]))
+            borders.append(border)
+            near = rows.reached[: self.width]
+            if first == 0 or not near.any():
+                break
+            place = self._nearest(near, border.row)
+            turn = np.ascontiguousarray(rows.turns[:, place])
+            border = _Border(first * self.width + place, closed(part, rows, place), turn)
+        off = turns_before(part, rows, int(np.argmax(rows.reached)))
+        counted = [one._replace(turn=np.asarray(one.turn) - off) for one in borders]
+        return counted, None if near.any() else Status(int(rows.status[0]))
+
+    def _first_of(self, border: _Border) -> int:
+        """The first line of the part that ends with that of a border."""
+        return max(border.row // self.width - self.ahead, 0)
+
+    def _of_lines(self, border: _Border, first: int, last: int) -> tuple[Session, AssemblyStart]:
+        """Lines from one to another, both included, and the border as their first assembly."""
+        begin, end = first * self.width, (last + 1) * self.width - 1
+        start = replace(
+            self.start,
+            state=border.state,
+            row=border.row - begin,
+            turn=border.turn,
+            signs=border.signs,
+            diagnostics=[],
+        )
+        return self.session.part(begin, end), start
+
+    def _border_in(self, result: Result, first: int, last: int, near: int) -> _Border | None:
+        """The row of the last line of a part that is nearest to the column of a row; None where
+        none is reached."""
+        rows, begin = result.row_states, (last - first) * self.width
+        reached = rows.reached[begin:]
+        if not reached.any():
+            return None
+        place = begin + self._nearest(reached, near)
+        state, turn = rows.states[:, place].copy(), rows.turns[:, place].copy()
+        signs = self._signs_of_line(result, last - first)
+        return _Border(first * self.width + place, state, turn, signs)
+
+    def _signs_of_line(self, result: Result, line: int) -> dict[str, float]:
+        """The signs of quaternions in the first row of a line that is reached."""
+        begin = line * self.width
+        reached = result.row_states.reached[begin : begin + self.width]
+        return _signs(result, begin + int(np.argmax(reached)))
+
+    def _nearest(self, reached: NDArray[np.bool_], row: int) -> int:
+        """The place in a line that is reached and nearest to the column of a row."""
+        places = np.flatnonzero(reached)
+        return int(places[np.argmin(np.abs(places - row % self.width))])
 
 
 def _signs(result: Result, row: int) -> dict[str, float]:

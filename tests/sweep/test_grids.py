@@ -198,10 +198,15 @@ def test_a_grid_has_two_inputs(motion: str, code: str, words: str) -> None:
 
 
 def test_grids_too_large_are_refused_before_they_are_made() -> None:
-    lines = "{from: 0, to: 1, count: 60000}"
-    with pytest.raises(mk.InvalidFile, match="too many numbers, 3600000000 rows"):
-        mk.loads(
-            f"{FIVE_BAR}motion: {{grid: true, inputs: {{A.theta: {lines}, E.theta: {lines}}}}}\n"
-        )
+    few, many, most = (f"{{from: 0, to: 1, count: {n}}}" for n in (60_000, 3_000_000, 30_000_000))
+    text = f"{FIVE_BAR}motion: {{grid: true, inputs: {{A.theta: ONE, E.theta: OTHER}}}}\n"
+    with pytest.raises(mk.InvalidFile, match="lines of the grid have too many rows to be held"):
+        mk.loads(text.replace("ONE", few).replace("OTHER", many))
+    with pytest.raises(mk.InvalidFile, match="the run has too many rows, 1.8e.12"):
+        mk.loads(text.replace("ONE", most).replace("OTHER", few))
+    model = mk.loads(text.replace("ONE", few).replace("OTHER", few))
+    with pytest.raises(mk.UsageError, match="too many rows to be held at once, 3600000000"):
+        model.analyze()
+    assert len(model.stream(rows=3_600_000)) == 1000
     plain = mk.loads(f"{FIVE_BAR}motion: {{grid: false, inputs: {ONE}}}\n")
     assert plain.analyze(["A.theta"])["A.theta"].size == 10
