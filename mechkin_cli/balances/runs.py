@@ -375,10 +375,12 @@ class RunningBalance:
 
     def add(self, result: Result, own: slice) -> None:
         """Takes the rows `own` of a part, which are behind those before."""
+        begin, end, _ = own.indices(result.rows)
         self._units = result.units
+        if begin == end:  # a part may end where the one before it did
+            return
         self._cycle.add(result, own)
         self._add(result, own)
-        begin, end, _ = own.indices(result.rows)
         self._done += end - begin
 
     def _add(self, result: Result, own: slice) -> None:

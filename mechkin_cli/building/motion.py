@@ -28,6 +28,7 @@ from mechkin_cli.building.joints import Halves, parts_of
 from mechkin_cli.building.rest import resting
 from mechkin_cli.building.spacing import (
     Spacing,
+    fit_lines,
     has_too_many_rows,
     is_long,
     sampled,
@@ -106,7 +107,7 @@ def build_motion(
             return motion
         if motion.rest is not None:
             return _whole_at_rest(fields, section, joints, per_row, motion.span.run_rows)
-        if motion.grid is not None and not _fit_lines(fields, motion.grid, per_row):
+        if motion.grid is not None and not fit_lines(fields, motion.grid, per_row):
             return MotionInputs((), 1)
         rows, build = sampled(motion.span.run_rows), _rows_of(fields, section, joints)
         return long_motion(motion._replace(span=None), rows, build, MOST_NUMBERS // per_row)
@@ -114,19 +115,6 @@ def build_motion(
     fields.refused.add("time")
     refuse_efforts(fields, joints)
     return MotionInputs((), 1)
-
-
-def _fit_lines(fields: Fields, grid: tuple[int, int], per_row: int) -> bool:
-    """Whether two lines of a grid fit in memory, as parts of its rows have; else that is noted."""
-    (_, width), most = grid, MOST_NUMBERS // per_row // 2
-    if width <= most:
-        return True
-    text = f"lines of the grid have too many rows to be held, {width}"
-    hint = "exchange the inputs, so that the one with fewer values is the second; or take fewer"
-    limit = f"{most} rows"
-    fields.error("too-many-rows", ("motion", "inputs"), text, hint, limit=limit)
-    fields.failed.add(SWEEP)
-    return False
 
 
 def _whole_at_rest(
@@ -234,6 +222,7 @@ def build_inputs(
         rows = sampled(run_rows)
     if rows is None and has_too_many_rows(fields, path, run_rows, per_row):
         return None
+    grid: tuple[int, int] | None
     if pair and rows is not None:
         orders, grid = _some_pairs(read, pair, rows)
     else:
@@ -452,7 +441,7 @@ def _all_pairs(orders: dict[str, Floats], grid: Sequence[str]) -> tuple[int, int
 
 def _some_pairs(
     read: Mapping[str, _Read], grid: Sequence[str], rows: NDArray[np.int64]
-) -> tuple[dict[str, Floats], tuple[int, int] | None]:
+) -> tuple[dict[str, Floats], tuple[int, int]]:
     """The values of inputs in some rows of a grid; how many values each of its two has."""
     slow, fast = grid
     width = read[fast].rows

@@ -25,6 +25,7 @@ from mechkin_cli.tables import default_table
 from mechkin_cli.tape import Recorder, Traced, as_recorded
 from mechkin_cli.tolerances import LAST_ROW, LONG_RUN, MOST_NUMBERS, MOST_ROWS
 from mechkin_cli.units import Dimension
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,6 +59,19 @@ def has_too_many_rows(fields: Fields, path: Path, rows: float, per_row: int | No
         numbers=(Number("numbers", float(numbers), limit=MOST_NUMBERS),),
     )
     return True
+
+
+def fit_lines(fields: Fields, grid: tuple[int, int], per_row: int) -> bool:
+    """Whether two lines of a grid fit in memory, as parts of its rows have; else that is noted."""
+    (_, width), most = grid, MOST_NUMBERS // per_row // 2
+    if width <= most:
+        return True
+    text = f"lines of the grid have too many rows to be held, {width}"
+    hint = "exchange the inputs, so that the one with fewer values is the second; or take fewer"
+    limit = f"{most} rows"
+    fields.error("too-many-rows", ("motion", "inputs"), text, hint, limit=limit)
+    fields.failed.add(SWEEP)
+    return False
 
 
 def numbers_per_row(file: MechanismFile, joints: Mapping[str, Joint]) -> int:

@@ -134,6 +134,7 @@ class RunningLedger:
         self._parts = [np.empty((2, 0)) for _ in orders]
         self._turns = np.empty(0, dtype=bool)
         self._slips: Floats | None = None
+        self._tells: bool | None = None  # whether the motion is known between the rows
         self._done = self._taken = 0
         # nothing is changed by what is added to -0
         self._sums = np.full(3, 0.0 if self._rubs else -0.0)
@@ -150,11 +151,13 @@ class RunningLedger:
         for number, pair in enumerate(self._integrals):
             new = np.stack([one.add(power) for one, power in zip(pair, powers, strict=True)])
             self._parts[number] = np.concatenate([self._parts[number], new], axis=1)
-        if self._rubs and run.between is not None:
+        if self._tells is None:
+            self._tells = run.between is not None
+        if self._rubs and self._tells:
             slips = _slips(run)[:, begin:end]
             joined = slips if self._slips is None else np.hstack([self._slips, slips])
             turns = (joined[:, 1:] * joined[:, :-1] <= 0.0).any(axis=0)
-            self._turns, self._slips = np.concatenate([self._turns, turns]), slips[:, -1:].copy()
+            self._turns, self._slips = np.concatenate([self._turns, turns]), joined[:, -1:].copy()
         return [*self._known()]
 
     def _take_energies(self, run: BasisQuantities, begin: int, end: int) -> None:
@@ -218,7 +221,7 @@ class RunningLedger:
         parts, fewer, least = (each[:, :size] * self._step for each in self._parts)
         off = np.abs(parts - fewer)
         run = part.run
-        if run.between is None:
+        if not self._tells:
             # at a jump no polynomial is the better one
             off += np.abs(parts - least)
             return parts[:, :count], off[:, :count]
@@ -230,15 +233,15 @@ class RunningLedger:
         self._before = np.concatenate([self._before, wrong[:count]])[-(POINTS // 2) :]
         parts, off = parts[:, :count].copy(), off[:, :count].copy()
         reached = run.result.row_states.reached
-        # the part may have rows that others have, too
+        # the part may have rows that others have, too; none leads to the first of lost ones
         begin = self._done - part.first
-        own = slice(begin, begin + count)
-        open_ &= reached[1:][own] & reached[:-1][own]
+        own = slice(max(begin, 0), begin + count)
+        every = np.zeros(max(reached.size - 1, 0), dtype=bool)
+        every[own] = open_[max(-begin, 0) :] & (reached[1:] & reached[:-1])[own]
+        open_[:] = False
+        open_[max(-begin, 0) :] = every[own]
         if open_.any():
-            every = np.zeros(reached.size - 1, dtype=bool)
-            every[own] = open_
-            found = _between(run, 2, every, allowed / self._step)
-            parts[:, open_], off[:, open_] = found
+            parts[:, open_], off[:, open_] = _between(run, 2, every, allowed / self._step)
         return parts, off
 
 

@@ -120,6 +120,7 @@ class Result:
         self._disturbance: int | None = None
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
+        self._error_bound: Floats | None = None
         self._unloaded: bool | None = None
         self._certificate: SweepProofs | None = None
         self.friction = FrictionRows()
@@ -261,7 +262,9 @@ class Result:
             demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
             self._store_verdicts(self.run(Ask(demand, iterations=0)))
         if name == "error_bound":
-            return error_bound(self)
+            if self._error_bound is None:
+                self._error_bound = error_bound(self)
+            return self._error_bound
         found: Floats = getattr(self, name)
         return found
 
@@ -451,6 +454,9 @@ class Result:
         self.residual = cast("Floats", joined([each.residual for each in results]))
         self._condition = joined([each._condition for each in results])
         self._power_error = joined([each._power_error for each in results])
+        if all(each._error_bound is not None for each in results):
+            # boxes of a part are those of its own rows
+            self._error_bound = joined([each._error_bound for each in results])
         lost = [each._unloaded for each in results if each._unloaded is not None]
         self._unloaded = any(lost) if lost else None
         for each in results:

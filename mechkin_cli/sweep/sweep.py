@@ -194,21 +194,22 @@ class Sweep:
             _ = motion.whole  # refused before anything is computed
         if not has_parts(self.session):
             return self._judged(self.session, self.start, None)
-        found = list(self.parts())
+        found = list(self.parts(held=True))
         rows = joined_rows(found, self.session)
         result = Result(self.session, self.start, rows, motion_between)
         result.join([part.result for part in found], [part.own for part in found])
         result.read(self.question[0])  # what depends on the rows of the whole run
         return result
 
-    def parts(self) -> Iterator[Part]:
-        """The rows in order, part by part; one part, if they are few."""
+    def parts(self, *, held: bool = False) -> Iterator[Part]:
+        """The rows in order, part by part; one part, if they are few. `held`: whether all parts are
+        held, so that what goes by all rows needs no run of its own."""
         if not has_parts(self.session):
             result = self._judged(self.session, self.start, None)
             yield Part(result, slice(0, result.rows))
             return
         first: FirstRow | None = None
-        for part in self._with_energies():
+        for part in self._with_energies(held=held):
             rows = part.result.row_states
             if rows.span.first == 0:
                 first = first_row(rows_of_start(self.session)[0], rows)
@@ -223,15 +224,21 @@ class Sweep:
         """Those asked for that depend on all rows before a row."""
         return [each for each in self.question[0] if each.kind in LEDGER_KINDS]
 
-    def _with_energies(self) -> Iterator[Part]:
+    def _with_energies(self, *, held: bool) -> Iterator[Part]:
         """The parts of the run with what depends on the rows before them, and behind them."""
         wanted = self._energies
         if not wanted:
             yield from parts_of(self.session, self.start, self._judged)
             return
-        measured = any(each.kind == "ledger_energy_error" for each in wanted)
-        size = self._largest_energy if measured else 0.0
-        for part, rows in self._ledgers():
+        size, ledgers = 0.0, self._ledgers()
+        if any(each.kind == "ledger_energy_error" for each in wanted):
+            if held:
+                every = [*ledgers]
+                size = max((rows.size for _, rows in every), default=0.0)
+                ledgers = iter(every)
+            else:
+                size = self._largest_energy
+        for part, rows in ledgers:
             begin, end, _ = part.own.indices(part.result.rows)
             found = rows.columns(size)
             for each in wanted:

@@ -138,7 +138,7 @@ def each(
         for name in names:
             work(name)
     except OSError as error:
-        raise refused(folder / name, error, (rows or {}).get(name) or None) from error
+        raise refused(folder / name, error, (rows or {}).get(name)) from error
 
 
 def _prepare(
@@ -150,7 +150,17 @@ def _prepare(
 ) -> None:
     """What is new, beside what was streamed, and second names of what is old."""
     new, old = (f"{attempt}{os.sep}{side}{os.sep}" for side in ("new", "old"))
-    each(folder, files, lambda name: _write(new + name, files[name]), rows)
+    done = {name: count for name, count in rows.items() if count}
+
+    def write(name: str) -> None:
+        try:
+            _write(new + name, files[name])
+        except OSError:
+            if name in done:
+                done[name] = rows_within(new + name, done[name])
+            raise
+
+    each(folder, files, write, done)
     each(folder, names, lambda name: _keep(f"{folder}{os.sep}{name}", old + name))
 
 
@@ -168,6 +178,24 @@ def _stays(path: Path, content: bytes) -> bool:
     except OSError:
         return False
     return True
+
+
+_HEADERS = {".csv": 1, ".jsonl": 0}
+"""Lines of text before the rows."""
+
+
+def rows_within(path: str, given: int) -> int:
+    """The whole rows of a table of text in a file that could not be written to its end; of another
+    file those that were `given` to it."""
+    header = _HEADERS.get(Path(path).suffix)
+    if header is None:
+        return given
+    try:
+        with open(path, "rb") as stream:
+            lines = sum(part.count(b"\n") for part in iter(lambda: stream.read(PART), b""))
+    except OSError:
+        return 0
+    return max(lines - header, 0)
 
 
 def _write(path: str, content: bytes) -> None:

@@ -26,6 +26,7 @@ from mechkin_cli.tables.file_set import (
     refusal,
     refuse_special,
     replace_files,
+    rows_within,
     settle,
     settle_all,
 )
@@ -232,6 +233,11 @@ class OutputFile(io.RawIOBase):
     def digest(self) -> Digest:
         """Of what was written so far."""
         return Digest(self._checksum, self._size)
+
+    def rows_within(self, given: int) -> int:
+        """The rows of a table that are on the disk, of which so many were given to it, when more
+        cannot be written."""
+        return 0 if self._stream is None else rows_within(str(self._stream.name), given)
 
     def writable(self) -> bool:
         """It is."""

@@ -257,10 +257,15 @@ class TableWriter:
         self._room.rows_done = 0
         self._gate.is_open = True
         try:
-            with refusal_of(self._file, lambda: self.rows + self._room.rows_done):
+            with refusal_of(self._file, self._rows_done):
                 yield
         finally:
             self._gate.is_open = False
+
+    def _rows_done(self) -> int:
+        """Rows that are in the file, or where it is packed or of Arrow those given to it."""
+        given = self.rows + self._room.rows_done
+        return self._file.rows_within(given) if isinstance(self._file, OutputFile) else given
 
 
 class _Gate(RawIOBase):

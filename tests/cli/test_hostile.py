@@ -1,6 +1,7 @@
 """What surrounds a run may fail: disks, pipes, inputs that are no files, texts of options."""
 
 import os
+import re
 import resource
 import shutil
 import signal
@@ -63,9 +64,15 @@ def test_a_limit_of_file_size_leaves_the_old_tables(folder: Path) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 
     found = run(folder, [*MECHKIN, "analyze", "long.yaml"], preexec_fn=limited)
-    one_sentence(found, 2, "cannot write out/long/sweep.csv: the file is larger than is allowed")
+    one_sentence(found, 2, " rows: the file is larger than is allowed")
     assert names(folder / "out") == ["sweep.csv"]
     assert old.read_text(encoding="utf-8") == "old\n"
+    # as many rows are told as are in so many bytes
+    rows = re.search(r"cannot write out/long/sweep\.csv after (\d+) rows: ", found.stderr)
+    assert rows is not None
+    run(folder, [*MECHKIN, "analyze", "long.yaml", "--format", "csv", "--out", "whole"])
+    lines = (folder / "whole/sweep.csv").read_bytes()[:100_000].count(b"\n")
+    assert int(rows[1]) == lines - 1
 
 
 def test_a_full_disk_leaves_the_old_tables(folder: Path) -> None:
@@ -79,7 +86,8 @@ def test_a_full_disk_leaves_the_old_tables(folder: Path) -> None:
     script = f"""{attach} && cd {disk} && mkdir -p out/long && echo old > out/long/sweep.csv
     {" ".join(MECHKIN)} analyze ../long.yaml; echo $?; ls -A out/long; cat out/long/sweep.csv"""
     found = run(folder, [*mount.split(), script])
-    assert found.stderr.startswith("mechkin: cannot write out/long/sweep.csv: the disk is full")
+    words = r"mechkin: cannot write out/long/sweep\.csv after [1-9]\d* rows: the disk is full"
+    assert re.match(words, found.stderr)
     assert found.stdout.splitlines() == ["2", "sweep.csv", "old"]
 
 

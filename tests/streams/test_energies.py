@@ -29,6 +29,11 @@ TEXTS = {
     .replace("point: [0.4, 0, 0]", "point: [0.6, 0, 0]"),
 }
 
+TEXTS["lost rows and friction"] = (
+    TEXTS["lost rows"].replace("count: 61", "count: 37")
+    + "  - {type: friction, joint: A, coefficient: 0.2, radius: 0.01}\n"
+)
+
 
 @pytest.mark.parametrize("rows", [4, 5, 8, 16])
 @pytest.mark.parametrize("name", TEXTS)
@@ -78,6 +83,9 @@ def test_the_run_is_made_as_often_as_its_end_is_needed(monkeypatch: pytest.Monke
         for _ in mk.loads(TEXTS[name]).stream(asked, rows=7):
             pass
         assert len(begun) == times, (name, asked)
+        begun.clear()
+        mk.loads(TEXTS[name]).analyze(asked)
+        assert len(begun) == 1 + (name != "a slider"), (name, asked)
 
 
 @pytest.mark.parametrize("name", ["a slider", "a block that turns round"])

@@ -210,19 +210,25 @@ def test_rows_of_one_block_that_fitted_are_told(
     assert sum(map(len, lines[: rows + header])) == fitted[0]
 
 
-def test_a_full_disk_is_told_of_a_small_file_with_its_rows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("fitted", [0, 1, 12, 37])
+@pytest.mark.parametrize("format", ["csv", "jsonl"])
+def test_a_full_disk_is_told_of_a_small_file_with_the_rows_that_fitted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fitted: int, format: str
 ) -> None:
     """A small file is held, and written when all of them take their places."""
 
     def write(path: str, content: bytes) -> None:
+        lines = content.splitlines(keepends=True)[: fitted + (format == "csv") + 1]
+        # the last line not to its end
+        Path(path).write_bytes(b"".join(lines)[:-1] if fitted < 37 else b"".join(lines))
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(file_set, "_write", write)
+    words = rf"out/t\.{format} after {fitted} rows: the disk is full"
     with OutputFolder(tmp_path / "out") as output:
-        with output.begin("t.csv") as file:
-            write_table(stream_of(random_table(37)), "csv", file)
-        with pytest.raises(UsageError, match=r"out/t\.csv after 37 rows: the disk is full"):
+        with output.begin(f"t.{format}") as file:
+            write_table(stream_of(random_table(37)), format, file)
+        with pytest.raises(UsageError, match=words):
             output.write_run()
 
 
