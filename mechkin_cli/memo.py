@@ -41,11 +41,19 @@ def remembered(
     @wraps(function)
     def recall(owner: Owner, /, *args: Arguments.args, **named: Arguments.kwargs) -> Answer:
         key: object = function
-        if args or named:
+        if named:
             by_name = [(k, _hashable(named[k])) for k in sorted(named)]
             key = (function, *map(_hashable, args), *by_name)
+        elif args:
+            key = (function, *args)
         memo = owner.memo
-        found = memo.get(key, memo)  # which is no answer of its own
+        try:
+            found = memo.get(key, memo)  # which is no answer of its own
+        except TypeError:  # an array
+            if named:
+                raise
+            key = (function, *map(_hashable, args))
+            found = memo.get(key, memo)
         if found is memo:
             found = memo[key] = function(owner, *args, **named)
         answer: Answer = found

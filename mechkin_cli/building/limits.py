@@ -1,16 +1,24 @@
-"""`limits:` to the ends of coordinates in SI."""
+"""`limits:` to the ends of coordinates in SI, and inputs that are too large to compute with."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import inf
+from math import inf, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from mechkin_cli.building.cylinders import SLIDE
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.tracks import track_ends
 from mechkin_cli.mechanism import Joint, Limit, Relation, dimension_of
 from mechkin_cli.schema import LimitSection, MechanismFile
-from mechkin_cli.units import DIMENSIONLESS
+from mechkin_cli.tape import within
+from mechkin_cli.tolerances import LARGEST_NUMBER, LARGEST_TURNS
+from mechkin_cli.units import ANGLE, DIMENSIONLESS
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
 
 
 def build_limits(
@@ -100,3 +108,45 @@ def _written(
                 continue
         here = fields.document.key_place(path)
         yield Limit(joint, coordinate, ends[0], ends[1], here, restitution)
+
+
+_ORDERS = ("value", "rate", "acceleration", "jerk")
+
+
+def refuse_too_large(
+    fields: Fields, joints: Mapping[str, Joint], path: Path, written: Floats, in_si: list[Floats]
+) -> None:
+    """Notes numbers of the input at `path` that are too large to compute with: values, as `written`
+    and in SI, and rates."""
+    name = str(path[-1])
+    for word, values in zip(_ORDERS, in_si, strict=False):
+        if not within(values, LARGEST_NUMBER):
+            fields.error(
+                "too-large",
+                path,
+                f"the {word} of {name} grows too large to compute with",
+                "check the law and its units",
+                measured=f"{float(np.abs(values).max()):.4g} in SI units",
+                limit=f"{LARGEST_NUMBER:g}",
+            )
+            return
+    joint, _, coordinate = name.rpartition(".")
+    _refuse_lost_turns(fields, path, joints[joint], coordinate, in_si[0], written)
+
+
+def _refuse_lost_turns(
+    fields: Fields, path: Path, joint: Joint, coordinate: str, in_si: Floats, written: Floats
+) -> None:
+    """Notes an angle of more turns than leave a place within one."""
+    most = 2.0 * pi * LARGEST_TURNS
+    if not joint.type.chain[joint.freedom_number(coordinate)].is_cyclic or within(in_si, most):
+        return
+    unit = fields.units.label(ANGLE)
+    fields.error(
+        "too-large",
+        path,
+        f"{path[-1]} has so many turns that nothing is left of the place within one",
+        "write the angle within a turn",
+        measured=f"{float(np.abs(written).max()):.4g} {unit}",
+        limit=f"{float(fields.units.from_si(most, ANGLE)):.4g} {unit}",
+    )

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from math import pi, prod
+from math import prod
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -25,6 +25,7 @@ from mechkin_cli.building.fields import (
     refuse_efforts,
 )
 from mechkin_cli.building.joints import Halves, parts_of
+from mechkin_cli.building.limits import refuse_too_large
 from mechkin_cli.building.rest import resting
 from mechkin_cli.building.spacing import (
     Spacing,
@@ -74,14 +75,13 @@ from mechkin_cli.schema import (
     TimeSection,
     WithRates,
 )
-from mechkin_cli.tape import differ, of_numbers, with_rates, within
+from mechkin_cli.tape import differ, of_numbers, with_rates
 from mechkin_cli.tolerances import (
     LARGEST_NUMBER,
-    LARGEST_TURNS,
     LONG_RUN,
     MOST_NUMBERS,
 )
-from mechkin_cli.units import ANGLE, TIME
+from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -91,7 +91,6 @@ if TYPE_CHECKING:
     from mechkin_cli.units import UnitSystem
 
 _RATES = ("rate", "acceleration", "jerk")
-_ORDERS = ("value", *_RATES)
 
 
 def build_motion(
@@ -167,18 +166,52 @@ def _rows_of(
 ) -> Callable[[NDArray[np.int64]], MotionInputs]:
     """What builds the motion in some rows, by their numbers; it raises InvalidFile where what the
     file says does not hold there. Numbers that go by no moments are read once for all parts."""
+    path = ("motion", "inputs")
     known: list[_Sections] = []
+    before: tuple[MotionInputs, ...] = ()
 
     def build(rows: NDArray[np.int64]) -> MotionInputs:
+        nonlocal before
         own = replace(fields, diagnostics=[], refused=set(fields.refused))
         if section.time is None and not known:
-            known.append(_read(own, ("motion", "inputs"), section.inputs, joints, None))
-        motion = _swept(own, section, joints, None, rows, known[0] if known else None)
+            known.append(_read(own, path, section.inputs, joints, None))
+        motion = next((each for each in before if each.rows == rows.size), None)
+        if motion is not None:
+            motion = _moved_on(own, joints, motion, rows, known[0][0])
+        else:
+            motion = _swept(own, section, joints, None, rows, known[0] if known else None)
         if motion is None or own.error_count:
             raise InvalidFile([one for one in own.diagnostics if one.severity == "error"])
+        if known and not (known[0][1] or section.rest or section.grid):
+            # rows of what is spaced, where nothing follows it, differ in values alone
+            are_spaced = all(one.rows == 1 or one.spaced for one in known[0][0].values())
+            before = (motion,) if are_spaced else ()
         return motion
 
     return build
+
+
+def _moved_on(
+    fields: Fields,
+    joints: Mapping[str, Joint],
+    motion: MotionInputs,
+    rows: NDArray[np.int64],
+    read: Mapping[str, _Read],
+) -> MotionInputs:
+    """A motion in as many other rows: what is spaced has other values, and all rates stay."""
+    inputs = []
+    for item in motion.inputs:
+        spaced = read[item.name].spaced
+        if spaced is not None:
+            orders = item.written_orders.copy()
+            orders[0] = spaced.values(rows)
+            values = _in_si(fields, item.coordinate, 0, orders)
+            refuse_too_large(fields, joints, ("motion", "inputs", item.name), orders[0], [values])
+            item = item._replace(values=values, written_orders=orders)
+        inputs.append(item)
+    assert motion.span is not None
+    span = motion.span._replace(first=int(rows[0]))
+    return motion._replace(inputs=tuple(inputs), span=span)
 
 
 def build_inputs(
@@ -468,47 +501,18 @@ def _driven(
 ) -> DrivenInput:
     """The input of the key at `path`, in SI and as written; numbers too large to compute with are
     noted. `orders` (4, rows)."""
-    name = str(path[-1])
-    joint, _, coordinate = name.rpartition(".")
+    joint, _, coordinate = str(path[-1]).rpartition(".")
     written = orders.copy()
-    in_si = []
-    for k in range(4):
-        values = np.asarray(fields.units.to_si(written[k], dimension_of(coordinate, k)))
-        in_si.append(values.copy() if np.may_share_memory(values, written) else values)
-    for word, values in zip(_ORDERS, in_si, strict=True):
-        if not within(values, LARGEST_NUMBER):
-            largest = float(np.abs(values).max())
-            fields.error(
-                "too-large",
-                path,
-                f"the {word} of {name} grows too large to compute with",
-                "check the law and its units",
-                measured=f"{largest:.4g} in SI units",
-                limit=f"{LARGEST_NUMBER:g}",
-            )
-            break
-    else:
-        _refuse_lost_turns(fields, path, joints[joint], coordinate, in_si[0], written[0])
+    in_si = [_in_si(fields, coordinate, k, written) for k in range(4)]
+    refuse_too_large(fields, joints, path, written[0], in_si)
     value, rate, acceleration, jerk = in_si
     return DrivenInput(joint, coordinate, value, rate, acceleration, jerk, written, follows)
 
 
-def _refuse_lost_turns(
-    fields: Fields, path: Path, joint: Joint, coordinate: str, in_si: Floats, written: Floats
-) -> None:
-    """Notes an angle of more turns than leave a place within one."""
-    most = 2.0 * pi * LARGEST_TURNS
-    if not joint.type.chain[joint.freedom_number(coordinate)].is_cyclic or within(in_si, most):
-        return
-    unit = fields.units.label(ANGLE)
-    fields.error(
-        "too-large",
-        path,
-        f"{path[-1]} has so many turns that nothing is left of the place within one",
-        "write the angle within a turn",
-        measured=f"{float(np.abs(written).max()):.4g} {unit}",
-        limit=f"{float(fields.units.from_si(most, ANGLE)):.4g} {unit}",
-    )
+def _in_si(fields: Fields, coordinate: str, order: int, written: Floats) -> Floats:
+    """The numbers of an order (rows,), of those as written (4, rows)."""
+    values = np.asarray(fields.units.to_si(written[order], dimension_of(coordinate, order)))
+    return values.copy() if np.may_share_memory(values, written) else values
 
 
 def _unrated(fields: Fields, path: Path, inputs: Sequence[DrivenInput]) -> tuple[str, ...]:

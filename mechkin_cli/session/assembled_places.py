@@ -32,7 +32,7 @@ from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Layout, OutputPlan, Readout, build_plan, home_inputs, home_state
 from mechkin_cli.record import dataclass, field, replace
 from mechkin_cli.session.inputs import closing_slots, tree_slots
-from mechkin_cli.session.kernel_run import Ask, RowInputs, run
+from mechkin_cli.session.kernel_run import Ask, RowInputs, run, turn_count
 from mechkin_cli.structure import (
     Rates,
     SolverGraph,
@@ -90,6 +90,11 @@ class Structure:
     def tree_slots(self) -> Mapping[int, int]:
         """Rows of the whole turns of the tree's angles, as `inputs.tree_slots`."""
         return tree_slots(self.plan)
+
+    @cached_property
+    def turns(self) -> int:
+        """How many rows `Followed.turns` has."""
+        return turn_count(self.plan)
 
     def turn_slot(self, quantity: Wanted) -> int | None:
         """The row of a joint's angle in `Followed.turns`, None where it has no turns."""

@@ -136,6 +136,7 @@ def follow(
     course: _kernel.Course | None = None,
     whole: Floats | None = None,
     limits: StepLimits | None = None,
+    slots: int | None = None,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
 
@@ -151,11 +152,14 @@ def follow(
         course: of the inputs between the rows, where they do not go straight.
         whole: (inputs, rows) whole turns.
         limits: what a step may do, instead of what `tolerances` says (and of `straight`).
+        slots: `turn_count` of the plan, where it is known.
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
     # a branch that ends at its first row leaves them as they are
-    along = np.zeros((turn_count(plan), rows)) if turns else None
+    along = None
+    if turns:
+        along = np.zeros((turn_count(plan) if slots is None else slots, rows))
     given = [] if turn is None else turn.tolist()
     found = _kernel.follow_rows(
         plan,

@@ -394,6 +394,7 @@ class Session:
             turn=turn,
             straight=self.problem.assembly.straight,
             whole=whole,
+            slots=self.structure.turns,
         )
 
     def follow_rows(

@@ -278,8 +278,9 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
 
 def count_from_first(session: Session, rows: SweepRows) -> None:
     """Turns count from the first row, whose angles lie in (-180, 180] degrees."""
-    if np.count_nonzero(rows.reached):
-        rows.turns -= turns_before(session, rows, int(np.argmax(rows.reached)))[:, None]
+    first = int(rows.reached.argmax())
+    if rows.reached[first]:
+        rows.turns -= turns_before(session, rows, first)[:, None]
 
 
 def turns_before(session: Session, rows: SweepRows, first: int) -> Floats:

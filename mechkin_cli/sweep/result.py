@@ -111,7 +111,8 @@ class Result:
         self.run_events: tuple[str, ...] = ()
         self.measure = ""
         self.demand = Demand.POSITION
-        self.residual = np.full(rows.reached.size, np.nan)
+        self.residual = np.empty(rows.reached.size)
+        self.residual.fill(np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
         self._columns: Columns = {}
         self._rests: Columns = {}

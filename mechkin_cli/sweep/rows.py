@@ -105,14 +105,15 @@ class SweepRows:
         """The rows of one way from the first, whose arrays become theirs."""
         count = found.limit.size
         turns = np.empty((0, count)) if found.turns is None else found.turns
+        numbers = np.arange(count)
         return cls(
             states=found.guess,
             limit=found.limit,
-            reached=np.arange(count) < found.reached,
+            reached=numbers < found.reached,
             status=np.zeros(count, dtype=np.int8),
             nodes=found.steps,
             diagnostics=[],
-            numbers=np.arange(count),
+            numbers=numbers,
             turns=turns,
             section=sections(found, count),
             ends=[],

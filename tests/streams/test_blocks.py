@@ -11,6 +11,7 @@ from references import FILE_OF, SWEPT
 from sweep.cut import cut
 
 import mechkin_cli as mk
+from mechkin_cli.mechanism import LEDGER_KINDS, LongRun, Span
 from mechkin_cli.tables import Columns, Words
 
 
@@ -94,3 +95,36 @@ def test_a_stream_may_be_gone_through_again_and_left() -> None:
 def test_a_block_has_a_whole_number_of_rows(rows: object) -> None:
     with pytest.raises(mk.UsageError, match="rows"):
         mk.load(FILE_OF["rcsr"]).stream(rows=rows)  # type: ignore[arg-type]
+
+
+TWO_MOVE = """format: 1
+plane: xy
+units: {length: mm, angle: deg}
+links: {bar: {}, slide: {}, arm: {}}
+joints:
+  A: {type: R, links: [ground, bar], point: [0, 0]}
+  B: {type: P, links: [bar, slide], point: [0, 0], axis: [1, 0]}
+  C: {type: R, links: [slide, arm], point: [0, 0]}
+motion:
+  inputs:
+    A.theta: {from: -20, to: 900, count: 70000, rate: 3}
+    B.s: {from: 1, to: 2, count: 70000}
+    C.theta: {at: 30}
+"""
+
+
+def test_numbers_of_a_long_motion_are_those_of_all_its_rows() -> None:
+    """Whichever parts were asked for before, and of whatever size."""
+    motion = mk.loads(TWO_MOVE, "two").problem.motion
+    assert isinstance(motion, LongRun)
+    whole = motion.whole
+    for first, last in ((0, 999), (1000, 1999), (69_000, 69_999), (5, 5), (7, 7), (0, 999)):
+        part = motion.part(first, last)
+        count = last + 1 - first
+        assert (part.rows, part.span) == (count, Span(first, count, 70_000))
+        for own, every in zip(part.inputs, whole.inputs, strict=True):
+            rows = slice(first, last + 1)
+            for number, (found, expected) in enumerate(zip(own[2:6], every[2:6], strict=True)):
+                assert found.tobytes() == expected[rows].tobytes(), (own.name, number)
+            expected = np.ascontiguousarray(every.written_orders[:, rows])
+            assert own.written_orders.tobytes() == expected.tobytes(), own.name
