@@ -288,7 +288,6 @@ class KernelRows:
     def __init__(self, result: Result, precise: Precise, chosen: Bools | None = None) -> None:
         self.result, self.precise, self.chosen = result, precise, chosen
         self.residual: Floats = np.full(result.rows, np.nan)
-        self._known: dict[int, tuple[Session, Floats]] = {}
 
     @property
     def of_text(self) -> PreciseInputs:
@@ -375,9 +374,7 @@ class KernelRows:
 
     def _constants(self, session: Session) -> Floats:
         """The constants of a session's plan in the text (constants, 2)."""
-        if id(session) not in self._known:
-            self._known[id(session)] = (session, self.precise.constants(session))
-        return self._known[id(session)][1]
+        return self.precise.constants(session)
 
 
 def _put_back(some: Floats, at: NDArray[np.intp], closed: Bools, rows: int) -> DoubleDoubles:

@@ -230,15 +230,19 @@ class Precise:
         self.moments = moments
         self._layouts: dict[int, tuple[InDoubles, Layout]] = {}
         self._inputs: dict[int, tuple[Problem, PreciseInputs]] = {}
+        self._numbers: dict[int, tuple[InDoubles, Floats]] = {}
 
     def constants(self, session: InDoubles) -> Floats:
         """The constants of the session's plan in double-double (constants, 2), in the order in
-        which the kernel numbers them: high and low, |low| <= ulp(high)/2.
+        which the kernel numbers them: high and low, |low| <= ulp(high)/2; kept.
 
         The session may be any of the file's: of the whole mechanism, of the loops that are
         followed, with other loads left out, sized or packed otherwise.
         """
-        return double_doubles(self.tape(self._constants(session)))
+        if id(session) not in self._numbers:
+            numbers = double_doubles(self.tape(self._constants(session)))
+            self._numbers[id(session)] = (session, numbers)
+        return self._numbers[id(session)][1]
 
     def enclosed_constants(self, session: InDoubles) -> Floats:
         """The same enclosed (constants, 3): high and low parts, and radii about their sums.

@@ -134,3 +134,10 @@ def test_ten_thousand_four_bars_are_no_longer_than_a_file_may_be() -> None:
     assert len(text.encode()) < MOST_BYTES
     if loader is not None:
         assert sum(1 for _ in yaml.parse(text, Loader=loader)) < MOST_EVENTS
+
+
+def test_exact_numbers_of_a_plan_are_read_once() -> None:
+    """Rows of many storeys are near singular, and each run looks at them in double-double."""
+    session = mk.loads(scissors(20).plane_text).design.session
+    once = session.precise.constants(session)
+    assert session.precise.constants(session) is once
