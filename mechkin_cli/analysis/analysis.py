@@ -318,13 +318,7 @@ class Analysis(Listed):
     @cached_property
     def balances(self) -> dict[str, dict[str, NDArray[Any]]]:
         """The same by name and label: `r.balances["shaking"]["amplitude"]`; words as texts."""
-        return {
-            table.name: {
-                c.label: c.values.array() if isinstance(c.values, Words) else c.values
-                for c in table.columns
-            }
-            for table in self.balance_tables
-        }
+        return by_label(self.balance_tables)
 
     @cached_property
     def _balanced(self) -> tuple[tuple[Columns, ...], tuple[Diagnostic, ...]]:
@@ -555,6 +549,17 @@ class Analysis(Listed):
             others = listing.rows[len(shown) :]
             parts.append(html_table(listing.labels, others))
         return "".join([*parts, Listing("", notes=listing.notes).html() if listing.notes else ""])
+
+
+def by_label(tables: Iterable[Columns]) -> dict[str, dict[str, NDArray[Any]]]:
+    """The columns of tables by name and label; words as texts."""
+    return {
+        table.name: {
+            c.label: c.values.array() if isinstance(c.values, Words) else c.values
+            for c in table.columns
+        }
+        for table in tables
+    }
 
 
 def _components(text: str, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:

@@ -80,7 +80,8 @@ class Design:
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
-        return Session.of(self.problem, self.graph).reading(lambda: self.precise)
+        session = Session.of(self.problem, self.graph, known=self.built.structure)
+        return session.reading(lambda: self.precise)
 
     @cached_property
     def precise(self) -> Precise:

@@ -11,7 +11,7 @@ import numpy as np
 from mechkin_cli import response as response_room, statics, tolerances
 from mechkin_cli.analysis.analysis import Analysis
 from mechkin_cli.analysis.design import Design
-from mechkin_cli.analysis.stream import Stream
+from mechkin_cli.analysis.stream import Beside, Stream
 from mechkin_cli.arguments import (
     Setting,
     a_setting,
@@ -274,11 +274,9 @@ def _asked(
     mode: str | None,
     closed_at: Sequence[str] | None,
     packing: Packing,
-    *,
-    balanced: bool = True,
 ) -> _Asked:
-    """The sweep of a model as it is asked for; arguments and errors are those of `Model.analyze`.
-    `balanced`: with the balances of the file."""
+    """The sweep of a model as it is asked for, with the balances of the file; arguments and errors
+    are those of `Model.analyze`."""
     if SWEEP not in model.runs:
         raise UsageError(
             f"{model.name} has no sweep: its file has no motion:; its responses are run by "
@@ -292,7 +290,7 @@ def _asked(
         session = session.in_mode(mode)
     session = statics.rested(session)
     layouts = chosen_tables(model.built, tables, SWEEP)
-    balances = chosen(model.built.balances, tables) if balanced else ()
+    balances = chosen(model.built.balances, tables)
     named = wanted_names(session, SWEEP, (), quantities)
     names = [*wanted_names(session, SWEEP, layouts, None), *named]
     asked = tuple(names)
@@ -359,10 +357,11 @@ def _stream_sweep(
 ) -> Stream:
     packing = a_packing(lanes, threads)
     rows = a_whole_number("rows", rows, "rows of a block", least=1)
-    asked = _asked(model, quantities, tables, mode, None, packing, balanced=False)
+    asked = _asked(model, quantities, tables, mode, None, packing)
     if mode is not None:
         refuse_unknown_mode(asked.sweep.start.diagnostics)
-    return Stream(model, asked.layouts, asked.sweep, rows)
+    beside = Beside(asked.systems, asked.balances)
+    return Stream(model, asked.layouts, asked.sweep, rows, wanted=beside)
 
 
 def _stream_response(

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.analysis import Analysis
+from mechkin_cli import balances
+from mechkin_cli.analysis.analysis import Analysis, by_label
 from mechkin_cli.arguments import a_text
 from mechkin_cli.assembly import rows_of_start
 from mechkin_cli.diagnostics import UsageError
@@ -33,9 +34,10 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.mechanism import AnyBalance
     from mechkin_cli.response import ResponseBlocks
-    from mechkin_cli.sweep import Result
-    from mechkin_cli.tables import TableColumn, TableLayout
+    from mechkin_cli.sweep import Part, Result
+    from mechkin_cli.tables import CoefficientsLayout, TableColumn, TableLayout
 
 
 class Stream:
@@ -48,6 +50,7 @@ class Stream:
         layouts: of the tables that were asked for.
         rows: how many a block has, but for the last one.
         run: `sweep`, or the name of the response.
+        wanted: what else the file wants of a sweep: dense systems and balances.
         branch: the mode of the rows, and how the first assembly was found.
         ended: where a response has ended, as far as its rows have been taken; None before.
     """
@@ -59,8 +62,11 @@ class Stream:
         source: Sweep | ResponseBlocks,
         rows: int,
         run: str = SWEEP,
+        wanted: Beside | None = None,
     ) -> None:
         self.model, self.layouts, self.rows, self.run = model, layouts, rows, run
+        self.wanted = wanted or Beside()
+        self._beside: _FoundBeside | None = None
         self.source = source
         if isinstance(source, Sweep) and has_parts(source.session):
             whole = [each.name for each in source.asked if each.kind in LEDGER_KINDS]
@@ -102,9 +108,11 @@ class Stream:
     def parts(self) -> Iterator[tuple[PartRows, slice]]:
         """The rows as they are solved, and which of each part are in none before it."""
         verdicts, notes = self._verdicts, self._notes = RunVerdicts(), Notes(self.run_rows)
-        self.ended = None
+        self.ended, self._beside = None, None
+        beside = _FoundBeside(self.wanted, self.run_rows)
         for part in self.source.parts():
             verdicts.add(part.result, part.own)
+            beside.add(part)
             rows = part.result.row_states
             notes.add(rows.diagnostics, rows.span.first, part.own)
             if not any(self.branch):
@@ -115,6 +123,7 @@ class Stream:
             del part, rows
             yield solved, own
             del solved
+        self._beside = beside
         if not isinstance(self.source, Sweep):
             verdicts.measure("energy error", np.array([self.source.energy_error]))
 
@@ -134,7 +143,35 @@ class Stream:
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What the run has to say of the rows that have been solved so far."""
         own = self.source.session.problem.diagnostics
-        return (*own, *self.source.start.diagnostics, *self._notes.found())
+        faults = () if self._beside is None else self._beside.faults
+        return (*own, *self.source.start.diagnostics, *self._notes.found(), *faults)
+
+    @property
+    def coefficients(self) -> tuple[Columns, ...]:
+        """The tables of the dense system of reactions that the file asks for, two for each, when
+        all rows have been taken; none before.
+
+        Raises:
+            UsageError: a row has no solution.
+        """
+        return () if self._beside is None else self._beside.systems
+
+    @property
+    def balance_tables(self) -> tuple[Columns, ...]:
+        """The balances that were asked for, as those of an analysis, when all rows have been
+        taken; none before."""
+        return () if self._beside is None else self._beside.tables
+
+    @property
+    def balances(self) -> dict[str, dict[str, NDArray[Any]]]:
+        """The same by name and label: `stream.balances["shaking"]["amplitude"]`; words as texts."""
+        return by_label(self.balance_tables)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every row that was taken has a solution, and every balance its cells."""
+        faulty = self._beside is not None and bool(self._beside.faults)
+        return self._verdicts.complete and not faulty
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:
@@ -172,6 +209,65 @@ class Stream:
 
     def __repr__(self) -> str:
         return f"{self.model.name}: {self.run_rows} rows in {len(self)} blocks"
+
+
+class Beside(NamedTuple):
+    """What a file wants of a sweep beside the tables of its rows."""
+
+    systems: tuple[CoefficientsLayout, ...] = ()
+    balances: tuple[AnyBalance, ...] = ()
+
+
+class _FoundBeside:
+    """The same while the rows pass by."""
+
+    def __init__(self, wanted: Beside, run_rows: int) -> None:
+        self._wanted = wanted
+        self._systems: dict[str, tuple[Columns, ...] | UsageError] = {}
+        self._balances = [balances.running_balance(one, run_rows) for one in wanted.balances]
+
+    def add(self, part: Part) -> None:
+        """Takes the rows of a part that are in none before it."""
+        result, (begin, end, _) = part.result, part.own.indices(part.result.rows)
+        for one in self._balances:
+            one.add(result, part.own)
+        first = result.row_states.span.first
+        for layout in self._wanted.systems:
+            if begin <= layout.row - 1 - first < end:
+                try:
+                    found = balances.coefficient_tables(layout, result)
+                    self._systems[layout.name] = found
+                except UsageError as error:  # raised where it is read, as of rows that are held
+                    self._systems[layout.name] = error
+
+    @cached_property
+    def _balanced(self) -> list[tuple[Columns, list[Diagnostic]]]:
+        return [one.table() for one in self._balances]
+
+    @property
+    def tables(self) -> tuple[Columns, ...]:
+        """The balances."""
+        return tuple(table for table, _ in self._balanced)
+
+    @property
+    def faults(self) -> tuple[Diagnostic, ...]:
+        """What is wrong with them, each once."""
+        return tuple(dict.fromkeys(fault for _, own in self._balanced for fault in own))
+
+    @property
+    def systems(self) -> tuple[Columns, ...]:
+        """The tables of dense systems.
+
+        Raises:
+            UsageError: a row has no solution.
+        """
+        tables: list[Columns] = []
+        for layout in self._wanted.systems:
+            found = self._systems[layout.name]
+            if isinstance(found, UsageError):
+                raise found
+            tables += found
+        return tuple(tables)
 
 
 class Ended(NamedTuple):

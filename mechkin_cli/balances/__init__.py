@@ -15,6 +15,6 @@ __getattr__, __dir__ = lazy_names(
     {
         "dense": "RowMotion borne_wrenches row_motion",
         "newton_euler": "DenseSystem coefficient_tables dense_system",
-        "runs": "balance_table",
+        "runs": "RunningBalance balance_table running_balance",
     },
 )

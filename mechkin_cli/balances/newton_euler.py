@@ -335,12 +335,13 @@ def solved(system: DenseSystem) -> list[float] | None:
 
 
 def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Columns, Columns]:
-    """The coefficients with their right side, and the unknowns with their values.
+    """The coefficients with their right side, and the unknowns with their values; the row is among
+    those of the result, which may be a part of the run's.
 
     Raises:
         UsageError: the row has no solution.
     """
-    row = layout.row - 1
+    row = layout.row - 1 - result.row_states.span.first
     if not result.solved[row]:
         raise UsageError(
             f"the coefficients {layout.name} are wanted at row {layout.row}, which has no "

@@ -32,15 +32,15 @@ from mechkin_cli import tolerances
 from mechkin_cli.derived import (
     GRAVITY,
     BasisQuantities,
+    CycleIntegral,
+    RunningTotal,
     effort_powers,
     friction_power,
     largest_between,
     load_powers_along,
     mean,
-    over_cycle,
     power_against,
     running_integral_of_cycle,
-    total,
     unloaded,
 )
 from mechkin_cli.diagnostics import Diagnostic
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
+    from mechkin_cli.units import UnitSystem
 
 
 def rates_along(result: Result, cycle: Cycle) -> KernelInputs:
@@ -79,28 +80,58 @@ def rates_along(result: Result, cycle: Cycle) -> KernelInputs:
     return along
 
 
-def cycle_fault(result: Result, balance: AnyBalance) -> Diagnostic | None:
-    """Why the rows are no closed cycle; None where they are."""
-    cycle, rows = balance.cycle, result.row_states
-    lost = np.flatnonzero(~result.solved)
-    if lost.size:
-        text = f"{balance.name}: row {lost[0] + 1} of the cycle has no solution"
-        hint = "balances need every row; move or turn the sweep so that all have one"
-        return _fault("balance-undefined", balance, text, hint)
-    ends = rows.states[:, [0, -1]]
-    if stands_elsewhere(result.session, ends) or _turned_in_part(result.session, ends):
-        text = f"{balance.name}: the mechanism is not back at the last row where it was at first"
-        again = (cycle.turns + 1) if cycle.number is not None else 2
-        hint = f"let the rows go over more turns, such as {again}; mechkin ranges shows the circuit"
-        return _fault("cycle-not-closed", balance, text, hint)
-    moving = result.problem.motion.inputs
-    along = rates_along(result, cycle).rates
-    for number, item in enumerate(moving):
-        if np.ptp(item.values) and not along[number].any():
-            text = f"{balance.name}: {item.name} moves, too, but does not follow {cycle.name}"
-            hint = f"tie it with {{with: an expression of {cycle.name}}}, or give the sweep a time:"
-            return _fault("no-cycle", balance, text, hint)
-    return None
+class _CycleRows:
+    """What shows of the rows of a run whether they are a closed cycle."""
+
+    def __init__(self, balance: AnyBalance) -> None:
+        self._balance = balance
+        self.lost: int | None = None
+        self._ends: list[Floats] = []
+        self._session: Session | None = None
+        self._moves: dict[int, tuple[float, float, bool]] = {}
+
+    def add(self, result: Result, own: slice) -> None:
+        """Takes the rows `own`, which are behind those before; none where one had no solution."""
+        lost, rows = np.flatnonzero(~result.solved[own]), result.row_states
+        begin, end, _ = own.indices(result.rows)
+        if lost.size and self.lost is None:
+            self.lost = int(lost[0]) + begin + rows.span.first
+        if self.lost is not None:
+            return
+        self._session = result.session
+        self._ends = [(self._ends or [rows.states[:, begin]])[0].copy()]
+        self._ends.append(rows.states[:, end - 1].copy())
+        along = rates_along(result, self._balance.cycle).rates
+        for number, item in enumerate(result.problem.motion.inputs):
+            values, before = item.values[own], self._moves.get(number)
+            low, high, follows = before or (np.inf, -np.inf, False)
+            low, high = min(low, float(values.min())), max(high, float(values.max()))
+            self._moves[number] = low, high, follows or bool(along[number].any())
+
+    def fault(self) -> Diagnostic | None:
+        """Why the rows are no closed cycle; None where they are."""
+        balance, cycle = self._balance, self._balance.cycle
+        if self.lost is not None:
+            text = f"{balance.name}: row {self.lost + 1} of the cycle has no solution"
+            hint = "balances need every row; move or turn the sweep so that all have one"
+            return _fault("balance-undefined", balance, text, hint)
+        session, ends = self._session, np.stack(self._ends, axis=1)
+        assert session is not None
+        if stands_elsewhere(session, ends) or _turned_in_part(session, ends):
+            text = (
+                f"{balance.name}: the mechanism is not back at the last row where it was at first"
+            )
+            again = (cycle.turns + 1) if cycle.number is not None else 2
+            more = f"let the rows go over more turns, such as {again}"
+            hint = f"{more}; mechkin ranges shows the circuit"
+            return _fault("cycle-not-closed", balance, text, hint)
+        for number, item in enumerate(session.problem.motion.inputs):
+            low, high, follows = self._moves[number]
+            if low != high and not follows:
+                text = f"{balance.name}: {item.name} moves, too, but does not follow {cycle.name}"
+                tie = f"tie it with {{with: an expression of {cycle.name}}}"
+                return _fault("no-cycle", balance, text, f"{tie}, or give the sweep a time:")
+        return None
 
 
 def _turned_in_part(session: Session, ends: Floats) -> bool:
@@ -115,24 +146,48 @@ def _turned_in_part(session: Session, ends: Floats) -> bool:
     return any(abs(turns - round(turns)) > tolerances.SAME_MODE for turns in gone)
 
 
-def repeated(values: Floats) -> bool:
-    """Whether the last of some samples is the first again, and all are numbers."""
-    if not np.isfinite(values).all():
-        return False
-    size = float(np.max(np.abs(values)))
-    return bool(abs(values[-1] - values[0]) <= tolerances.REPEATS * size)
+class _Samples:
+    """Whether samples over the rows, which come block by block, are a cycle."""
 
+    def __init__(self) -> None:
+        self.lost: int | None = None
+        self.size = 0.0
+        self._count = 0
+        self._first = self._last = np.nan
 
-def sample_fault(balance: AnyBalance, what: str, values: Floats) -> Diagnostic:
-    """Why samples over the rows are no cycle."""
-    lost = np.flatnonzero(~np.isfinite(values))
-    if lost.size:
-        text = f"{balance.name}: {what} has no value in row {lost[0] + 1}"
-        return _fault("balance-undefined", balance, text, "see the notes on that row, and on it")
-    text = f"{balance.name}: {what} is not at the last row what it was at the first"
-    hint = "what depends on time, or on an angle with its turns, does not repeat; use wrap(angle)"
-    measured = f"{values[-1]:.6g} for {values[0]:.6g}"
-    return _fault("cycle-not-closed", balance, text, hint, measured)
+    def add(self, values: Floats) -> None:
+        """Takes the next samples."""
+        if not values.size:
+            return
+        lost = np.flatnonzero(~np.isfinite(values))
+        if lost.size and self.lost is None:
+            self.lost = int(lost[0]) + self._count
+        self.size = float(np.maximum(self.size, np.max(np.abs(values))))
+        if not self._count:
+            self._first = float(values[0])
+        self._last = float(values[-1])
+        self._count += values.size
+
+    @property
+    def repeat(self) -> bool:
+        """Whether the last is the first again, and all are numbers."""
+        if self.lost is not None:
+            return False
+        return abs(self._last - self._first) <= tolerances.REPEATS * self.size
+
+    def fault(self, balance: AnyBalance, what: str) -> Diagnostic:
+        """Why they are no cycle."""
+        if self.lost is not None:
+            text = f"{balance.name}: {what} has no value in row {self.lost + 1}"
+            return _fault(
+                "balance-undefined", balance, text, "see the notes on that row, and on it"
+            )
+        text = f"{balance.name}: {what} is not at the last row what it was at the first"
+        hint = (
+            "what depends on time, or on an angle with its turns, does not repeat; use wrap(angle)"
+        )
+        measured = f"{self._last:.6g} for {self._first:.6g}"
+        return _fault("cycle-not-closed", balance, text, hint, measured)
 
 
 def _fault(
@@ -193,53 +248,68 @@ def _root(needed: Callable[[float], float]) -> float:
     return high
 
 
-def harmonic(
-    values: Floats, cycle: Cycle, order: float
-) -> tuple[float, float, float, float, float]:
-    """An order of samples over the cycle (rows - 1,): both coefficients, amplitude and phase (rad)
-    of amplitude cos(n x - phase), and how far the coefficients may be off."""
-    cosine, sine = _coefficients(values, cycle, order)
-    error = float("nan")
-    if values.size % 2 == 0 and 4 * round(order * cycle.turns) < values.size:
-        coarse = _coefficients(values[::2], cycle, order)
-        error = max(abs(cosine - coarse[0]), abs(sine - coarse[1]))
-    amplitude = float(np.sqrt(cosine * cosine + sine * sine))
-    phase = float(atan2(np.array([sine]), np.array([cosine]))[0])
-    return cosine, sine, amplitude, phase, error
+class _Coefficients:
+    """Cosine and sine coefficient of an order, of samples of a cycle that come block by block.
+
+    Args:
+        cycle: that they are of.
+        order: multiple of the turn of its input, or of the whole of time.
+        count: of all samples, without the last row, which repeats the first.
+        each: reads every second one, or every one.
+    """
+
+    def __init__(self, cycle: Cycle, order: float, count: int, each: int = 1) -> None:
+        self._cycle, self._order, self._each = cycle, order, each
+        self._count, self._whole, self._done = count // each, round(order * cycle.turns), 0
+        self._cosine, self._sine = RunningTotal(), RunningTotal()
+
+    def add(self, values: Floats) -> None:
+        """Takes the next samples."""
+        cycle, begin = self._cycle, -(-self._done // self._each)
+        own = values[-self._done % self._each :: self._each]
+        self._done += values.size
+        # n x from row to row is a whole number of N-th parts of a turn
+        part = (self._whole * np.arange(begin, begin + own.size)) % self._count
+        angle = np.asarray(part * (2.0 * np.pi / self._count), dtype=np.float64)
+        if cycle.number is not None:
+            angle = (angle if cycle.step > 0.0 else -angle) + self._order * cycle.first
+        self._cosine.add(own * cos(angle))
+        if self._whole:
+            self._sine.add(own * sin(angle))
+
+    def found(self) -> tuple[float, float]:
+        """Both, when all samples have been taken."""
+        factor = (1.0 if self._whole == 0 else 2.0) / self._count
+        sine = 0.0 if self._whole == 0 else factor * self._sine.found()
+        return factor * self._cosine.found(), sine
 
 
-def _coefficients(values: Floats, cycle: Cycle, order: float) -> tuple[float, float]:
-    count, whole = values.size, round(order * cycle.turns)
-    # n x from row to row is a whole number of N-th parts of a turn
-    part = (whole * np.arange(count)) % count
-    angle = np.asarray(part * (2.0 * np.pi / count), dtype=np.float64)
-    if cycle.number is not None:
-        angle = (angle if cycle.step > 0.0 else -angle) + order * cycle.first
-    factor = (1.0 if whole == 0 else 2.0) / count
-    cosine = factor * total(values * cos(angle))
-    sine = 0.0 if whole == 0 else factor * total(values * sin(angle))
-    return cosine, sine
+class _Harmonic:
+    """An order of samples over the cycle; arguments are those of `_Coefficients`."""
 
+    def __init__(self, cycle: Cycle, order: float, count: int) -> None:
+        self._fine = _Coefficients(cycle, order, count)
+        self._coarse: _Coefficients | None = None
+        if count % 2 == 0 and 4 * round(order * cycle.turns) < count:
+            self._coarse = _Coefficients(cycle, order, count, 2)
 
-Work = tuple[str, float, float]
-"""Name, work over the cycle (J), and how far it may be off."""
+    def add(self, values: Floats) -> None:
+        """Takes the next samples."""
+        self._fine.add(values)
+        if self._coarse is not None:
+            self._coarse.add(values)
 
-
-def work_over_cycle(result: Result, balance: LoadWork) -> tuple[list[Work], list[Diagnostic]]:
-    """Works of efforts, gravity, loads and inertia, and their sum, which is what is missing."""
-    cycle, works, faults = balance.cycle, list[Work](), []
-    parts = powers_along(result, cycle)
-    total = np.zeros(result.rows)
-    for values in parts.values():
-        total = total + values
-    for name, values in parts.items():
-        if repeated(values):
-            works.append((name, *over_cycle(values[:-1], cycle.step)))
-        else:
-            faults.append(sample_fault(balance, name, values))
-            works.append((name, float("nan"), float("nan")))
-    works.append(("sum", *over_cycle(total[:-1], cycle.step)))
-    return works, faults
+    def found(self) -> tuple[float, float, float, float, float]:
+        """Both coefficients, amplitude and phase (rad) of amplitude cos(n x - phase), and how far
+        the coefficients may be off."""
+        cosine, sine = self._fine.found()
+        error = float("nan")
+        if self._coarse is not None:
+            coarse = self._coarse.found()
+            error = max(abs(cosine - coarse[0]), abs(sine - coarse[1]))
+        amplitude = float(np.sqrt(cosine * cosine + sine * sine))
+        phase = float(atan2(np.array([sine]), np.array([cosine]))[0])
+        return cosine, sine, amplitude, phase, error
 
 
 def powers_along(result: Result, cycle: Cycle) -> dict[str, Floats]:
@@ -274,97 +344,233 @@ Table = tuple[Columns, list["Diagnostic"]]
 
 def balance_table(balance: AnyBalance, result: Result) -> Table:
     """A balance over the rows, and what is wrong with it; its cells are empty then."""
-    fault = cycle_fault(result, balance)
+    found = running_balance(balance, result.rows)
+    found.add(result, slice(0, result.rows))
+    return found.table()
+
+
+def running_balance(balance: AnyBalance, rows: int) -> RunningBalance:
+    """A balance over so many rows, which come part by part."""
     if isinstance(balance, LoadWork):
-        return _work(balance, result, fault)
+        return _RunningWork(balance, rows)
     if isinstance(balance, Harmonics):
-        return _harmonics(balance, result, fault)
-    return _flywheel(balance, result, fault)
+        return _RunningHarmonics(balance, rows)
+    return _RunningFlywheel(balance, rows)
 
 
-def _work(balance: LoadWork, result: Result, fault: Diagnostic | None) -> Table:
-    works, faults = [("sum", np.nan, np.nan)], [] if fault is None else [fault]
-    if fault is None:
-        works, faults = work_over_cycle(result, balance)
-    names, work, error = zip(*works, strict=True)
-    columns = [
-        TableColumn("of", "", words_of(names)),
-        _numbers(result, "work", ENERGY, work),
-        _numbers(result, "error", ENERGY, error),
-    ]
-    return _table(balance, columns, faults)
+class RunningBalance:
+    """A balance over the rows of a run, which come part by part; the digits are those of all rows
+    at once.
+
+    Args:
+        balance: of the file.
+        rows: of the run.
+    """
+
+    def __init__(self, balance: AnyBalance, rows: int) -> None:
+        self._run_rows = rows
+        self._units: UnitSystem | None = None
+        self._cycle = _CycleRows(balance)
+        self._done = 0
+
+    def add(self, result: Result, own: slice) -> None:
+        """Takes the rows `own` of a part, which are behind those before."""
+        self._units = result.units
+        self._cycle.add(result, own)
+        self._add(result, own)
+        begin, end, _ = own.indices(result.rows)
+        self._done += end - begin
+
+    def _add(self, result: Result, own: slice) -> None:
+        raise NotImplementedError
+
+    def table(self) -> Table:
+        """The balance when all rows have been taken, and what is wrong with it; its cells are empty
+        then."""
+        raise NotImplementedError
+
+    def _of_cycle(self, values: Floats) -> Floats:
+        """The values of the rows that come next without the last of the run, which repeats the
+        first."""
+        return values[: max(self._run_rows - 1 - self._done, 0)]
+
+    def _numbers(
+        self, label: str, dimension: Dimension, values: Sequence[float] | np.ndarray
+    ) -> TableColumn:
+        assert self._units is not None
+        in_file = self._units.from_si(np.array(values, dtype=np.float64), dimension)
+        return TableColumn(label, self._units.label(dimension), np.asarray(in_file))
 
 
-def _harmonics(balance: Harmonics, result: Result, fault: Diagnostic | None) -> Table:
-    names, orders, cells, unit = [], [], [], ""
-    faults = [] if fault is None else [fault]
-    for label, expression in balance.of:
-        column = column_of(ColumnLayout(label, expression), result)
-        values, unit = np.asarray(column.values, dtype=np.float64), column.unit
-        if fault is None and not repeated(values):
-            faults.append(sample_fault(balance, label, values))
-        good = fault is None and repeated(values)
-        for order in balance.orders:
-            names.append(label)
-            orders.append(order)
-            cells.append(harmonic(values[:-1], balance.cycle, order) if good else (np.nan,) * 5)
-            if cells[-1][2] <= REACTION_ROUNDING * float(np.max(np.abs(values))):
-                # an amplitude that is rounding has no phase
-                cells[-1] = (*cells[-1][:3], np.nan, cells[-1][4])
-    cosine, sine, amplitude, phase, error = np.array(cells).reshape(-1, 5).T.copy()
-    columns = [
-        TableColumn("of", "", words_of(names)),
-        TableColumn("order", "", np.array(orders)),
-        TableColumn("cosine", unit, cosine),
-        TableColumn("sine", unit, sine),
-        TableColumn("amplitude", unit, amplitude),
-        _numbers(result, "phase", ANGLE, phase),
-        TableColumn("error", unit, error),
-    ]
-    return _table(balance, columns, faults)
+class _RunningWork(RunningBalance):
+    """Works of efforts, gravity, loads and inertia, and their sum, which is what is missing."""
+
+    def __init__(self, balance: LoadWork, rows: int) -> None:
+        super().__init__(balance, rows)
+        self._balance = balance
+        self._works: dict[str, tuple[_Samples, CycleIntegral]] = {}
+
+    def _add(self, result: Result, own: slice) -> None:
+        if self._cycle.lost is not None:
+            return
+        parts = {name: p[own] for name, p in powers_along(result, self._balance.cycle).items()}
+        total = np.zeros(result.rows)[own]
+        for values in parts.values():
+            total = total + values
+        for name, values in (*parts.items(), ("sum", total)):
+            if name not in self._works:
+                integral = CycleIntegral(self._run_rows - 1, self._balance.cycle.step)
+                self._works[name] = _Samples(), integral
+            samples, integral = self._works[name]
+            samples.add(values)
+            integral.add(self._of_cycle(values))
+
+    def table(self) -> Table:
+        fault, balance = self._cycle.fault(), self._balance
+        works, faults = [("sum", np.nan, np.nan)], [] if fault is None else [fault]
+        if fault is None:
+            works = []
+            for name, (samples, integral) in self._works.items():
+                if name == "sum" or samples.repeat:
+                    works.append((name, *integral.found()))
+                else:
+                    faults.append(samples.fault(balance, name))
+                    works.append((name, np.nan, np.nan))
+        names, work, error = zip(*works, strict=True)
+        columns = [
+            TableColumn("of", "", words_of(names)),
+            self._numbers("work", ENERGY, work),
+            self._numbers("error", ENERGY, error),
+        ]
+        return _table(balance, columns, faults)
 
 
-def _flywheel(balance: Flywheel, result: Result, fault: Diagnostic | None) -> Table:
-    size: tuple[float, ...] = (float("nan"),) * 7
-    faults = [] if fault is None else [fault]
-    if fault is None:
-        parts = powers_along(result, balance.cycle)
+class _RunningHarmonics(RunningBalance):
+    """Fourier coefficients."""
+
+    def __init__(self, balance: Harmonics, rows: int) -> None:
+        super().__init__(balance, rows)
+        self._balance = balance
+        self._samples = [_Samples() for _ in balance.of]
+        self._orders = [
+            [_Harmonic(balance.cycle, order, rows - 1) for order in balance.orders]
+            for _ in balance.of
+        ]
+        self._unit = ""
+
+    def _add(self, result: Result, own: slice) -> None:
+        if self._cycle.lost is not None and self._unit:
+            return
+        every = zip(self._balance.of, self._samples, self._orders, strict=True)
+        for (label, expression), samples, orders in every:
+            column = column_of(ColumnLayout(label, expression), result)
+            self._unit, values = column.unit, np.asarray(column.values, dtype=np.float64)[own]
+            samples.add(values)
+            for order in orders if samples.lost is None else ():
+                order.add(self._of_cycle(values))
+
+    def table(self) -> Table:
+        fault, balance = self._cycle.fault(), self._balance
+        names, numbers, cells = [], [], []
+        faults = [] if fault is None else [fault]
+        for (label, _), samples, orders in zip(
+            balance.of, self._samples, self._orders, strict=True
+        ):
+            if fault is None and not samples.repeat:
+                faults.append(samples.fault(balance, label))
+            good = fault is None and samples.repeat
+            for number, order in zip(balance.orders, orders, strict=True):
+                names.append(label)
+                numbers.append(number)
+                cells.append(order.found() if good else (np.nan,) * 5)
+                if cells[-1][2] <= REACTION_ROUNDING * samples.size:
+                    # an amplitude that is rounding has no phase
+                    cells[-1] = (*cells[-1][:3], np.nan, cells[-1][4])
+        cosine, sine, amplitude, phase, error = np.array(cells).reshape(-1, 5).T.copy()
+        columns = [
+            TableColumn("of", "", words_of(names)),
+            TableColumn("order", "", np.array(numbers)),
+            TableColumn("cosine", self._unit, cosine),
+            TableColumn("sine", self._unit, sine),
+            TableColumn("amplitude", self._unit, amplitude),
+            self._numbers("phase", ANGLE, phase),
+            TableColumn("error", self._unit, error),
+        ]
+        return _table(balance, columns, faults)
+
+
+class _RunningFlywheel(RunningBalance):
+    """The flywheel; it holds two numbers of every row, as the work is known only with the mean of
+    all loads, and then the rows are gone through for each rate that is tried."""
+
+    def __init__(self, balance: Flywheel, rows: int) -> None:
+        super().__init__(balance, rows)
+        self._balance = balance
+        self._loads, self._inertia = _Held("the loads' moment"), _Held("the reduced inertia")
+
+    def _add(self, result: Result, own: slice) -> None:
+        if self._cycle.lost is not None:
+            return
+        parts = powers_along(result, self._balance.cycle)
         efforts = {f"{joint}.{coordinate}.effort" for joint, coordinate in result.problem.acting}
         loads = np.zeros(result.rows)
         for name, values in parts.items():
             if name not in efforts and name != "inertia":
                 loads = loads + values
         energy = result.problem.quantities()["row.kinetic_energy"]
-        along = rates_along(result, balance.cycle)
+        along = rates_along(result, self._balance.cycle)
         inertia = 2.0 * result.evaluated([energy], inputs=along)[energy.name][0]
-        for what, values in (("the loads' moment", loads), ("the reduced inertia", inertia)):
-            if not repeated(values):
-                faults.append(sample_fault(balance, what, values))
+        self._loads.add(loads[own])
+        self._inertia.add(inertia[own])
+
+    def table(self) -> Table:
+        size: tuple[float, ...] = (float("nan"),) * 7
+        fault, balance = self._cycle.fault(), self._balance
+        faults = [] if fault is None else [fault]
+        if fault is None:
+            both = self._loads, self._inertia
+            faults += [one.samples.fault(balance, one.what) for one in both if not one.repeat]
         if not faults:
+            loads, inertia = self._loads.values[:-1], self._inertia.values[:-1]
             step, turning = balance.cycle.step, balance.unevenness
-            size = sized(loads[:-1], inertia[:-1], step, turning, balance.rate)
-    flywheel, estimate, drive, fluctuation, least, most, without = size
-    columns = [
-        TableColumn("unevenness", "", np.array([balance.unevenness])),
-        _numbers(result, "rate", ANGULAR_RATE, [balance.rate]),
-        _numbers(result, "flywheel", INERTIA, [flywheel]),
-        _numbers(result, "estimate", INERTIA, [estimate]),
-        _numbers(result, "drive", MOMENT, [drive]),
-        _numbers(result, "work_fluctuation", ENERGY, [fluctuation]),
-        _numbers(result, "least_inertia", INERTIA, [least]),
-        _numbers(result, "largest_inertia", INERTIA, [most]),
-        TableColumn("unevenness_without", "", np.array([without])),
-    ]
-    return _table(balance, columns, faults)
+            size = sized(loads, inertia, step, turning, balance.rate)
+        flywheel, estimate, drive, fluctuation, least, most, without = size
+        columns = [
+            TableColumn("unevenness", "", np.array([balance.unevenness])),
+            self._numbers("rate", ANGULAR_RATE, [balance.rate]),
+            self._numbers("flywheel", INERTIA, [flywheel]),
+            self._numbers("estimate", INERTIA, [estimate]),
+            self._numbers("drive", MOMENT, [drive]),
+            self._numbers("work_fluctuation", ENERGY, [fluctuation]),
+            self._numbers("least_inertia", INERTIA, [least]),
+            self._numbers("largest_inertia", INERTIA, [most]),
+            TableColumn("unevenness_without", "", np.array([without])),
+        ]
+        return _table(balance, columns, faults)
+
+
+class _Held:
+    """Samples over all rows, by what they are of."""
+
+    def __init__(self, what: str) -> None:
+        self.what, self.samples = what, _Samples()
+        self._parts: list[Floats] = []
+
+    def add(self, values: Floats) -> None:
+        """Takes the next samples."""
+        self.samples.add(values)
+        self._parts.append(values.copy())
+
+    @property
+    def repeat(self) -> bool:
+        """Whether they are a cycle."""
+        return self.samples.repeat
+
+    @property
+    def values(self) -> Floats:
+        """All of them."""
+        return np.concatenate(self._parts)
 
 
 def _table(balance: AnyBalance, columns: list[TableColumn], faults: list[Diagnostic]) -> Table:
     return Columns(balance.name, balance.title, tuple(columns), of_rows=False), faults
-
-
-def _numbers(
-    result: Result, label: str, dimension: Dimension, values: Sequence[float] | np.ndarray
-) -> TableColumn:
-    units = result.units
-    in_file = units.from_si(np.array(values, dtype=np.float64), dimension)
-    return TableColumn(label, units.label(dimension), np.asarray(in_file))

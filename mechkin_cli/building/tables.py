@@ -4,7 +4,8 @@ and `balances:` - sums over a cycle of the sweep: works, harmonics and flywheels
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,10 +20,14 @@ from mechkin_cli.mechanism import (
     Flywheel,
     Harmonics,
     LoadWork,
+    LongRun,
     Problem,
     Wanted,
+    in_pieces,
     is_of_motion,
+    with_ends,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import MechanismFile, tables as written
 from mechkin_cli.session import round_of
 from mechkin_cli.tables import (
@@ -42,7 +47,7 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from mechkin_cli.building.fields import Fields, Path
     from mechkin_cli.expressions import Expression
-    from mechkin_cli.mechanism import DrivenInput, Problem, Wanted
+    from mechkin_cli.mechanism import DrivenInput, MotionInputs, Problem, Wanted
     from mechkin_cli.schema import Coefficients
     from mechkin_cli.show import Floats
 
@@ -359,6 +364,36 @@ def build_balances(
     return tuple(balance for balance in balances if balance is not None)
 
 
+class _Extent(NamedTuple):
+    """The first and the last of some values in their order, the least and the largest."""
+
+    first: float
+    last: float
+    least: float
+    most: float
+
+    def joined(self, later: _Extent) -> _Extent:
+        """With values behind these."""
+        least, most = min(self.least, later.least), max(self.most, later.most)
+        return _Extent(self.first, later.last, least, most)
+
+    @property
+    def size(self) -> float:
+        """The largest magnitude."""
+        return max(-self.least, self.most)
+
+
+def _moments_of(motion: MotionInputs) -> Floats:
+    """The moments of the rows of a motion in time, in the file's unit."""
+    assert motion.time is not None
+    return motion.time.written
+
+
+def _written(number: int, name: str, motion: MotionInputs) -> Floats:
+    """An input's value or one of its rates, by name, in the file's units."""
+    return motion.inputs[number].orders[name][1]
+
+
 class _BalanceBuilder:
     def __init__(self, fields: Fields, problem: Problem) -> None:
         self.fields = fields
@@ -366,6 +401,8 @@ class _BalanceBuilder:
         self.known: Mapping[str, Wanted] = problem.quantities()
 
     def balance(self, path: Path, section: written.AnyBalance) -> AnyBalance | None:
+        if isinstance(section, written.FlywheelBalance) and not self._is_held(path):
+            return None
         cycle = self._cycle(path, section)
         place, title = self.fields.document.place(path), section.title or section.name
         if isinstance(section, written.HarmonicsBalance):
@@ -382,6 +419,17 @@ class _BalanceBuilder:
             return Flywheel(section.name, title, place, cycle, unevenness, rate)
         return None if cycle is None else LoadWork(section.name, title, place, cycle)
 
+    def _is_held(self, path: Path) -> bool:
+        """Whether numbers of all rows fit in memory, as a flywheel holds them; else that is
+        noted."""
+        motion = self.problem.motion
+        if not isinstance(motion, LongRun) or motion.rows <= motion.most_rows:
+            return True
+        text = f"a flywheel holds numbers of all rows, and has too many of them: {motion.rows}"
+        limit = f"{motion.most_rows} rows"
+        self.fields.error("too-many-rows", path, text, "take a larger step", limit=limit)
+        return False
+
     def _cycle(self, path: Path, section: written.AnyBalance) -> Cycle | None:
         motion = self.problem.motion
         at: Path = path if section.cycle is None else (*path, "cycle")
@@ -394,24 +442,25 @@ class _BalanceBuilder:
             hint = f"inputs are {', '.join(inputs)}" if inputs else "add motion: inputs:"
             self.fields.error("not-driven", at, text, hint)
             return None
-        item = motion.inputs[inputs[name]]
+        number = inputs[name]
+        item = with_ends(motion).inputs[number]
         turn = round_of(self.problem, item)
         if turn is None:
             hint = "name an input that turns, or with time: and laws that come back, cycle: time"
             self.fields.error("no-cycle", at, f"{name} is not an angle that goes round", hint)
             return None
-        if not self._are_equal(at, name, item.written):
+        if not self._are_equal(at, name, lambda piece: piece.inputs[number].written):
             return None
         turns = float(item.written[-1] - item.written[0]) / float(turn)
         count = round(abs(turns))
         if count == 0 or abs(abs(turns) - count) > EQUAL_STEPS * count:
             self._not_closed(at, item, float(turn))
             return None
-        step = float(item.values[-1] - item.values[0]) / (item.values.size - 1)
-        return Cycle(name, inputs[name], count, step, float(item.values[0]))
+        step = float(item.values[-1] - item.values[0]) / (motion.rows - 1)
+        return Cycle(name, number, count, step, float(item.values[0]))
 
     def _default_cycle(self, section: written.AnyBalance) -> str | None:
-        motion = self.problem.motion
+        motion = with_ends(self.problem.motion)
         if motion.time is not None and not isinstance(section, written.FlywheelBalance):
             return TIME
         moving = motion.leading
@@ -423,41 +472,60 @@ class _BalanceBuilder:
             hint = "name the input that turns, or give the sweep a time:"
             self.fields.error("no-cycle", at, "the sweep has no time", hint)
             return None
-        if not self._are_equal(at, TIME, motion.time.written):
+        if not self._are_equal(at, TIME, _moments_of):
             return None
-        for item in motion.inputs:
+        for number, item in enumerate(with_ends(motion).inputs):
             turn = round_of(self.problem, item)
-            for k, (name, (_, values)) in enumerate(list(item.orders.items())[:3]):
-                gap = float(values[-1] - values[0])
+            for k, name in enumerate(list(item.orders)[:3]):
+                extent = self._extent(partial(_written, number, name))
+                gap = extent.last - extent.first
                 if k == 0 and turn is not None:
                     gap -= round(gap / float(turn)) * float(turn)
-                if abs(gap) > EQUAL_STEPS * max(float(np.max(np.abs(values))), 1.0):
+                if abs(gap) > EQUAL_STEPS * max(extent.size, 1.0):
                     unit = self.problem.units.label(self.known[name].dimension)
                     text = f"{name} is not back at the last row: {gap:.6g} {unit} is missing"
                     hint = "let time: go over a whole period of the laws"
                     self.fields.error("cycle-not-closed", at, text, hint)
                     return None
-        moments = motion.time.values
-        step = float(moments[-1] - moments[0]) / (moments.size - 1)
-        return Cycle(TIME, None, 1, step, float(moments[0]))
+        time = with_ends(motion).time
+        assert time is not None
+        step = float(time.values[-1] - time.values[0]) / (motion.rows - 1)
+        return Cycle(TIME, None, 1, step, float(time.values[0]))
 
-    def _are_equal(self, at: Path, name: str, values: Floats) -> bool:
-        steps = np.diff(values)
-        if steps.size < LEAST_ROWS:
-            text = f"{values.size} row{'s' * (values.size != 1)} are too few for a cycle"
+    def _extent(self, read: Callable[[MotionInputs], Floats]) -> _Extent:
+        """Of something over the rows."""
+        found: _Extent | None = None
+        for piece in in_pieces(self.problem.motion):
+            values = read(piece)
+            here = _Extent(*(float(x) for x in (values[0], values[-1], values.min(), values.max())))
+            found = here if found is None else found.joined(here)
+        assert found is not None
+        return found
+
+    def _are_equal(self, at: Path, name: str, read: Callable[[MotionInputs], Floats]) -> bool:
+        gaps = self.problem.motion.rows - 1
+        if gaps < LEAST_ROWS:
+            text = f"{gaps + 1} row{'s' * (gaps > 0)} are too few for a cycle"
             hint = f"give at least {LEAST_ROWS + 1}, the last as the first"
             self.fields.error("too-few-rows", at, text, hint)
             return False
-        mean = float(values[-1] - values[0]) / steps.size
-        off = np.abs(steps - mean)
+        extent = self._extent(read)
+        mean = (extent.last - extent.first) / gaps
         # differences of large values round by those
-        slack = EQUAL_STEPS * abs(mean) + 4.0 * np.finfo(float).eps * float(np.max(np.abs(values)))
-        wrong = np.flatnonzero(~(off <= slack))
-        if mean != 0.0 and not wrong.size:
+        slack = EQUAL_STEPS * abs(mean) + 4.0 * np.finfo(float).eps * extent.size
+        row, step = 0, None
+        for piece in in_pieces(self.problem.motion):
+            steps = np.diff(read(piece))
+            wrong = np.flatnonzero(~(np.abs(steps - mean) <= slack))
+            if wrong.size or mean == 0.0:
+                place = int(wrong[0]) if wrong.size else 0
+                row, step = row + place, float(steps[place])
+                break
+            row += steps.size
+        if step is None:
             return True
-        row = int(wrong[0]) if wrong.size else 0
         text = f"the rows are not at equal distances of {name}"
-        measured = f"{steps[row]:.6g} from row {row + 1} to row {row + 2}, {mean:.6g} on average"
+        measured = f"{step:.6g} from row {row + 1} to row {row + 2}, {mean:.6g} on average"
         hint = "sweep it with from, to and step, or count"
         self.fields.error("unequal-rows", at, text, hint, measured=measured)
         return False
@@ -470,7 +538,7 @@ class _BalanceBuilder:
         missing = abs(end - last)
         text = f"{item.name} goes from {first:.12g} to {last:.12g} {unit}: {missing:.6g} {unit} "
         text += "are missing to a full turn"
-        step = abs(last - first) / (item.written.size - 1)
+        step = abs(last - first) / (self.problem.motion.rows - 1)
         is_next = abs(missing - step) < EQUAL_STEPS * step
         repeat = "the last row repeats the first: " if is_next else ""
         self.fields.error("cycle-not-closed", at, text, f"{repeat}write to: {end:.12g}")
@@ -543,10 +611,11 @@ class _BalanceBuilder:
             return rate
         if cycle is None or cycle.number is None:
             return None
-        rates = self.problem.motion.inputs[cycle.number].rates
-        if rates[0] == 0.0 or np.ptp(rates) > EQUAL_STEPS * abs(rates[0]):
+        number = cycle.number
+        rates = self._extent(lambda piece: piece.inputs[number].rates)
+        if rates.first == 0.0 or rates.most - rates.least > EQUAL_STEPS * abs(rates.first):
             text = f"{cycle.name} has no constant rate in the sweep"
             hint = "give rate: to the balance, or to the input"
             self.fields.error("no-rate", path, text, hint)
             return None
-        return abs(float(rates[0]))
+        return abs(rates.first)

@@ -85,6 +85,7 @@ def _wanted_runs(model: Model, command: AnalyzeCommand) -> list[str]:
     if command.table is None:
         return list(model.runs)
     wanted = {table.run for table in chosen(tuple(model.tables), command.table)}
+    wanted |= {SWEEP for _ in chosen(model.built.coefficients, command.table)}
     return [run for run in model.runs if run in wanted]
 
 
@@ -104,11 +105,7 @@ def _is_long(model: Model, run: str, command: AnalyzeCommand) -> bool:
 
 
 def _reads_all_rows(model: Model, command: AnalyzeCommand) -> bool:
-    """Whether balances, dense systems or energies of the whole run are among what is wanted."""
-    built = model.built
-    others = (*built.balances, *built.coefficients)
-    if chosen(others, command.table):
-        return True
+    """Whether energies of the whole run are among what is wanted."""
     known = model.problem.quantities()
     tables = chosen(tuple(table for table in model.tables if table.run == SWEEP), command.table)
     names = {name for table in tables for one in table.columns for name in one.expression.names}
@@ -125,8 +122,7 @@ class StreamedRun:
 
     def is_enough(self, *, strict: bool) -> bool:
         """Whether every row has a solution, and where that is asked for is `ok`."""
-        verdicts = self.stream.verdicts
-        return verdicts.complete and (verdicts.sound or not strict)
+        return self.stream.complete and (self.stream.verdicts.sound or not strict)
 
     def report(self, file: str, folder: Path) -> None:
         """Prints the first and the last rows of the tables, and what stands below them."""
@@ -147,6 +143,8 @@ def stream_to(
     packing = command.lanes, command.threads
     names = [each.name for each in chosen(tuple(model.tables), command.table) if each.run == run]
     wanted = None if command.table is None else names
+    if wanted is not None and run == SWEEP and not command.summary_only:
+        wanted += [one.name for one in chosen(model.built.coefficients, command.table)]
     if run != SWEEP:
         tell(f"integrating {run}")
     # of a response, with the verdicts on its rows
@@ -169,13 +167,16 @@ def stream_to(
             span = part.analysis.result.row_states.span
             progress(span.first + span.rows)
             del part, rows
+    others = [] if command.summary_only else [*stream.coefficients]
+    others += stream.balance_tables
     for table in tables:
         summary = table.summary(stream)
         if summary is not None:
-            below = summary_table(table.layout.name, table.layout.title, summary)
-            for name in command.formats:
-                with output.begin(f"{below.name}.{name}") as file:
-                    write_table(stream_of(below), name, file, style)
+            others.append(summary_table(table.layout.name, table.layout.title, summary))
+    for other in others:
+        for name in command.formats:
+            with output.begin(f"{other.name}.{name}") as file:
+                write_table(stream_of(other), name, file, style)
     return StreamedRun(stream, tables, summary_only=command.summary_only)
 
 

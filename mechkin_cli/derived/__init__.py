@@ -19,6 +19,6 @@ __getattr__, __dir__ = lazy_names(
         "coefficients": "GRAVITY effort_powers friction_power load_powers_along power_against "
         "unloaded",
         "columns": "derived_columns",
-        "quadrature": "largest_between mean over_cycle running_integral_of_cycle total",
+        "quadrature": "CycleIntegral RunningTotal largest_between mean running_integral_of_cycle",
     },
 )

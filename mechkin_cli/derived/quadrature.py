@@ -16,7 +16,7 @@ beside the integrands, has a zero is split there: what jumps at that zero costs 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
@@ -65,15 +65,39 @@ def _horner(factors: list[Fraction], x: int) -> Fraction:
     return value
 
 
+class RunningTotal:
+    """The sum of samples that come block by block, in their order, with what each addition loses
+    (Neumaier, 1974)."""
+
+    def __init__(self) -> None:
+        self._sum = self._lost = 0.0
+
+    def add(self, values: Floats) -> None:
+        """Adds the next samples."""
+        sums = np.cumsum(np.concatenate([[self._sum], values]))
+        lost = _lost(sums[:-1], values, sums[1:])
+        self._lost = float(np.cumsum(np.concatenate([[self._lost], lost]))[-1])
+        self._sum = float(sums[-1])
+
+    def found(self) -> float:
+        """The sum of the samples so far."""
+        return self._sum + self._lost
+
+
+def _lost(before: Floats, values: Floats, after: Floats) -> Floats:
+    """What sums `after` = `before` + `values` lose, element by element."""
+    with np.errstate(invalid="ignore"):  # beside what is infinite
+        is_larger = np.abs(before) >= np.abs(values)
+        large, small = np.where(is_larger, (before, values), (values, before))
+        lost: Floats = (large - after) + small
+    return lost
+
+
 def total(values: Floats) -> float:
-    """The sum in the order of the samples, with what each addition loses (Neumaier, 1974)."""
-    result = lost = 0.0
-    for value in values.tolist():
-        after = result + value
-        small, large = (value, result) if abs(result) >= abs(value) else (result, value)
-        lost += (large - after) + small
-        result = after
-    return result + lost
+    """The sum of samples as `RunningTotal` has it."""
+    found = RunningTotal()
+    found.add(values)
+    return found.found()
 
 
 def running_integral(values: Floats, step: float) -> Floats:
@@ -87,14 +111,65 @@ def running_integral(values: Floats, step: float) -> Floats:
 def interval_integrals(values: Floats, most: int) -> Floats:
     """From each sample to the next (samples - 1,), a unit apart, of the polynomial through the
     `most` nearest ones."""
-    count = values.size
-    points = min(most, count)
-    parts = np.empty(max(count - 1, 0))
-    for interval in range(count - 1):
-        first = min(max(interval - (points // 2 - 1), 0), count - points)
-        weights = interval_weights(points, interval - first)
-        parts[interval] = total(np.array(weights) * values[first : first + points])
-    return parts
+    return IntervalIntegrals(values.size, most).add(values)
+
+
+class IntervalIntegrals:
+    """The same of samples that come block by block: an interval is known when those samples are
+    that it is read from, of which some come behind it.
+
+    Args:
+        count: of all samples.
+        most: samples that an interval is read from, if there are so many.
+    """
+
+    def __init__(self, count: int, most: int) -> None:
+        self._count, self._points = count, min(most, count)
+        self._before = self._points // 2 - 1  # samples before an interval's own
+        self._held = np.empty(0)
+        self._first = self._done = 0  # the first sample that is held; intervals that are known
+
+    def add(self, values: Floats) -> Floats:
+        """Takes the next samples; gives the intervals that are now known, behind those before."""
+        held = self._held = np.concatenate([self._held, values])
+        known, points = self._first + held.size, self._points
+        end = known - points + self._before + 1 if known >= points else 0
+        end = max(self._count - 1, 0) if known == self._count else max(end, 0)
+        parts = np.empty(end - self._done)
+        # polynomials through as many samples on either side
+        inner = max(self._done, self._before), min(end, self._count - points + self._before + 1)
+        for interval in range(self._done, end):
+            if inner[0] <= interval < inner[1]:
+                continue
+            first = self._start(interval)
+            weights = np.array(interval_weights(points, interval - first))
+            own = first - self._first
+            parts[interval - self._done] = total(weights * held[own : own + points])
+        if inner[0] < inner[1]:
+            own = self._start(inner[0]) - self._first
+            windows = [held[own + k :][: inner[1] - inner[0]] for k in range(points)]
+            weights = np.array(interval_weights(points, self._before))
+            at = slice(inner[0] - self._done, inner[1] - self._done)
+            parts[at] = _total_of_products(weights, windows)
+        self._done = end
+        first = self._start(end)
+        self._held, self._first = held[first - self._first :].copy(), first
+        return parts
+
+    def _start(self, interval: int) -> int:
+        """The first sample that an interval is read from."""
+        return min(max(interval - self._before, 0), self._count - self._points)
+
+
+def _total_of_products(weights: Floats, columns: Sequence[Floats]) -> Floats:
+    """The `total` of the columns' products with their weights, element by element."""
+    sums, lost = np.zeros((2, columns[0].size))
+    for weight, column in zip(weights.tolist(), columns, strict=True):
+        product = weight * column
+        after = sums + product
+        lost += _lost(sums, product, after)
+        sums = after
+    return sums + lost
 
 
 def running_integral_of_cycle(values: Floats, step: float) -> Floats:
@@ -114,20 +189,77 @@ def over_cycle(values: Floats, step: float) -> tuple[float, float]:
     """The integral over a cycle whose `values` (samples,) repeat, and how far it may be off: by
     what leaving out every other sample changes; of an odd number of samples by what polynomials
     that do not go round the cycle change."""
-    total = mean(values) * values.size * step
-    if values.size % 2 == 0:
-        half = mean(values[::2]) * values.size * step
-    else:
-        closed = np.concatenate([values, values[:1]])
-        half = float(running_integral(closed, step)[-1])
-    return total, abs(total - half)
+    found = CycleIntegral(values.size, step)
+    found.add(values)
+    return found.found()
+
+
+class CycleIntegral:
+    """The same of samples that come block by block, of which there are `count` in all."""
+
+    def __init__(self, count: int, step: float) -> None:
+        self._step = step
+        self._every, self._half = RunningMean(count), RunningMean(count, each=2)
+        self._intervals = None if count % 2 == 0 else IntervalIntegrals(count + 1, POINTS)
+        self._around = -0.0  # nothing is changed by what is added to -0
+        self._first: Floats | None = None
+
+    def add(self, values: Floats) -> None:
+        """Takes the next samples."""
+        self._every.add(values)
+        if self._intervals is None:
+            self._half.add(values)
+            return
+        self._first = values[:1].copy() if self._first is None and values.size else self._first
+        self._integrate(values)
+
+    def _integrate(self, values: Floats) -> None:
+        assert self._intervals is not None
+        parts = self._intervals.add(values)
+        self._around = float(np.cumsum(np.concatenate([[self._around], parts]))[-1])
+
+    def found(self) -> tuple[float, float]:
+        """The integral and its error, when all samples have been taken."""
+        whole = self._every.found() * self._every.count * self._step
+        if self._intervals is None:
+            other = self._half.found() * self._every.count * self._step
+        else:
+            assert self._first is not None
+            self._integrate(self._first)
+            other = self._around * self._step
+        return whole, abs(whole - other)
+
+
+class RunningMean:
+    """The mean of samples that come block by block; nan where one is.
+
+    Args:
+        count: of the samples of all blocks.
+        each: counts every second one, or every one, from the first on.
+    """
+
+    def __init__(self, count: int, each: int = 1) -> None:
+        self.count, self._each = count, each
+        self._total, self._taken, self._is_lost = RunningTotal(), 0, False
+
+    def add(self, values: Floats) -> None:
+        """Takes the next samples."""
+        own = values[-self._taken % self._each :: self._each]
+        self._taken += values.size
+        self._is_lost |= not np.isfinite(own).all()
+        if not self._is_lost:
+            self._total.add(own)
+
+    def found(self) -> float:
+        """The mean, when all samples have been taken."""
+        return float("nan") if self._is_lost else self._total.found() / -(-self.count // self._each)
 
 
 def mean(values: Floats) -> float:
     """The mean of samples; nan where one is."""
-    if not np.isfinite(values).all():
-        return float("nan")
-    return total(values) / values.size
+    found = RunningMean(values.size)
+    found.add(values)
+    return found.found()
 
 
 def largest_between(values: Floats) -> float:

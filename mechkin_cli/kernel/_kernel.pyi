@@ -506,6 +506,27 @@ class Plan:
         lanes: int = 0,
         threads: int = 1,
     ) -> None: ...
+    def balance(
+        self,
+        *,
+        free: Sequence[tuple[int, int, float]],
+        cyclic: Sequence[int],
+        inputs: Floats,
+        states: Floats,
+        stiffness: Floats,
+        turned: Floats,
+        time: Floats,
+        constraint_rates: Floats | None = None,
+        given: int = 0,
+        known: int = 0,
+        limits: tuple[float, float, float, float],
+        steps: int,
+        outputs: Outputs,
+        iterations: int = 0,
+        tests: tuple[float, float, float],
+        lanes: int = 0,
+        threads: int = 1,
+    ) -> int: ...
     def search(
         self,
         *,

@@ -56,7 +56,7 @@ __getattr__, __dir__ = lazy_names(
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
         "joint": "GROUND_NAME Joint counted far_link frame_on is_told is_written stop_of "
         "told_coordinates",
-        "long_run": "LongRun long_motion",
+        "long_run": "LongRun in_pieces long_motion with_ends",
         "model": "Amount Bushing Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring "
         "Tensor UPPER_HALF Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "

@@ -7,7 +7,7 @@ asks for a number in all rows gets it, as far as the memory allows.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism.motion import Moments, MotionInputs, Span
+from mechkin_cli.tolerances import PART_ROWS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,6 +39,21 @@ def long_motion(
         most_rows: how many rows may be in memory at once.
     """
     return cast("MotionInputs", LongRun(sample, rows, build, most_rows))
+
+
+def in_pieces(motion: MotionInputs) -> Iterator[MotionInputs]:
+    """A motion in pieces, each of which begins with the last row of the one before; in one, where
+    it is held."""
+    if not isinstance(motion, LongRun):
+        yield motion
+        return
+    for first in range(0, motion.rows - 1, PART_ROWS):
+        yield motion.part(first, min(first + PART_ROWS, motion.rows - 1))
+
+
+def with_ends(motion: MotionInputs) -> MotionInputs:
+    """A motion with the first and the last row of another: that itself, or a sample."""
+    return motion.sample if isinstance(motion, LongRun) else motion
 
 
 class LongRun:

@@ -18,7 +18,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Number
 from mechkin_cli.exact import PI
 from mechkin_cli.kernel import _kernel, functions
-from mechkin_cli.mechanism import dimension_of
+from mechkin_cli.mechanism import LongRun, dimension_of
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session.kernel_run import RowInputs
 from mechkin_cli.units import ANGLE
@@ -50,17 +50,22 @@ def reduce_angle(value: float, turn: Fraction) -> tuple[float, float]:
     return float(rest[0]), float(whole[0])
 
 
-def without_turns(values: Floats, turn: Fraction) -> tuple[Floats, Floats]:
-    """Angles in (-half a turn, half a turn] and the whole turns taken off, both (rows,).
+def without_turns(
+    values: Floats, turn: Fraction, *, one_by_one: bool = False
+) -> tuple[Floats, Floats]:
+    """Angles in (-half a turn, half a turn] and the whole turns taken off, both (rows,); where none
+    goes beyond half a turn, they are left as they are.
 
     Args:
         values: angles.
         turn: a full turn in their unit.
+        one_by_one: whether one at minus half a turn is turned whatever the others are.
     """
     size = float(turn)
     cells, _, largest, smallest = _kernel.extremes(np.ascontiguousarray(values))
     most = max(largest, -smallest)
-    if cells < values.size or not 0.5 * size < most <= tolerances.LARGEST_TURNS * size:
+    turned = 0.5 * size < most or (one_by_one and smallest == -0.5 * size)
+    if cells < values.size or not (turned and most <= tolerances.LARGEST_TURNS * size):
         return values, np.zeros_like(values)
     whole = np.rint(values / size)
     if Fraction(size) != turn:
@@ -234,12 +239,14 @@ def _turn(unit: CompoundUnit) -> Fraction:
 def _reduced(problem: Problem, values: Floats) -> tuple[Floats, Floats]:
     """The values without whole turns, and these; recorded numbers as they are."""
     whole = np.zeros(values.shape)
-    reduced = values
+    reduced, motion = values, problem.motion
+    # parts of a run have the bits of all its rows
+    one_by_one = motion.span is not None or isinstance(motion, LongRun)
     for number, item in enumerate(problem.motion.inputs):
         turn = turn_of(problem, item)
         if turn is None or item.written.dtype != np.float64:
             continue
-        rest, turns = without_turns(item.written, turn)
+        rest, turns = without_turns(item.written, turn, one_by_one=one_by_one)
         if turns.any():
             reduced = values.copy() if reduced is values else reduced
             reduced[number] = problem.units.to_si(rest, ANGLE)

@@ -81,6 +81,8 @@ class TextRoom:
     def __init__(self, size: int = TEXT_ROOM) -> None:
         self._size = size  # for each thread
         self._memory = np.empty(0, np.uint8)
+        self.rows_done = 0
+        """Rows whose text was used, of those whose pieces were asked for last."""
 
     def pieces(
         self,
@@ -95,7 +97,7 @@ class TextRoom:
                 which there was room, with the starts and sizes of the pieces.
             threads: that write.
         """
-        row = 0
+        row = self.rows_done = 0
         while row < rows:
             size = self._size * threads
             if self._memory.size < size:
@@ -106,7 +108,7 @@ class TextRoom:
             view = self._memory.data
             for start, count in pieces:
                 yield view[start : start + count]
-            row = end
+            row = self.rows_done = end
 
 
 def csv_header(columns: Iterable[tuple[str, str]], style: CsvStyle = PLAIN_CSV) -> bytes:

@@ -138,7 +138,7 @@ def each(
         for name in names:
             work(name)
     except OSError as error:
-        raise refused(folder / name, error, (rows or {}).get(name, 0)) from error
+        raise refused(folder / name, error, (rows or {}).get(name) or None) from error
 
 
 def _prepare(
@@ -350,8 +350,8 @@ def refusal(target: Path) -> Iterator[None]:
         raise refused(target, error) from error
 
 
-def refused(target: Path, error: OSError, rows: int = 0) -> UsageError:
-    """What is said of a file that cannot be written, of which so many rows were."""
+def refused(target: Path, error: OSError, rows: int | None = None) -> UsageError:
+    """What is said of a file that cannot be written, of which so many rows were; None: no table."""
     reason = error.strerror or str(error)
     cure = _CURES.get(error.errno or 0, f"{reason}; choose another folder with --out")
     if getattr(error, "winerror", None) in _OPEN_ELSEWHERE:
@@ -359,5 +359,5 @@ def refused(target: Path, error: OSError, rows: int = 0) -> UsageError:
             "no permission to write there, or another program has it open; close it there or "
             "choose another folder with --out"
         )
-    done = f" after {rows} rows" if rows else ""
+    done = "" if rows is None else f" after {rows} rows"
     return UsageError(f"cannot write {target}{done}: {cure}")

@@ -271,10 +271,10 @@ class OutputFile(io.RawIOBase):
 
 
 def _write_all(stream: io.FileIO, data: bytearray | memoryview) -> None:
-    """Writes all of the data, in parts: of larger ones the system takes up to twice as long."""
+    """Writes all of the data, as much at a time as the system takes."""
     view = memoryview(data)
     while view:
-        view = view[stream.write(view[:PART]) or 0 :]
+        view = view[stream.write(view) or 0 :]
 
 
 class OutputFolder:

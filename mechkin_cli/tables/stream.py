@@ -217,11 +217,11 @@ class TableWriter:
         kind, _, packing = format.partition(".")
         self.rows = 0
         self._heading, self._file = heading, file
-        self._gate = _Gate(file)
+        self._room, self._gate = room or TextRoom(), _Gate(file)
         with self._writing():
             self._packed = _Packed(packing, self._gate) if packing else None
             target: Any = self._packed or self._gate
-            self._table = _KINDS[kind](heading, target, style, room or TextRoom())
+            self._table = _KINDS[kind](heading, target, style, self._room)
 
     def write(self, block: Block) -> None:
         """Adds rows.
@@ -253,10 +253,11 @@ class TableWriter:
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Inside, the file is written to."""
+        """Inside, the file is written to; an error counts the rows of the block under way, too."""
+        self._room.rows_done = 0
         self._gate.is_open = True
         try:
-            with refusal_of(self._file, lambda: self.rows):
+            with refusal_of(self._file, lambda: self.rows + self._room.rows_done):
                 yield
         finally:
             self._gate.is_open = False
@@ -282,11 +283,11 @@ class _Gate(RawIOBase):
 
 
 @contextmanager
-def refusal_of(file: Sink, rows: Callable[[], int] = lambda: 0) -> Iterator[None]:
+def refusal_of(file: Sink, rows: Callable[[], int | None] = lambda: None) -> Iterator[None]:
     """Inside, an error of the system is told of this file, if it is one of a run.
 
     Args:
-        rows: that were written.
+        rows: that were written; None: it is no table.
 
     Raises:
         UsageError: in its place.

@@ -23,6 +23,7 @@ from mechkin_cli.tables import (
     stream_of,
     write_table,
 )
+from mechkin_cli.tables.csv import CsvStyle, TextRoom
 from mechkin_cli.tables.writers import STREAM_FORMATS
 from mechkin_cli.tolerances import HELD_BYTES, TEXT_ROOM
 
@@ -170,6 +171,38 @@ def test_a_table_that_is_dropped_writes_nothing_into_its_closed_file(
     del writer
     gc.collect()
     assert [str(one) for one in said] == []
+
+
+@pytest.mark.parametrize("format", ["csv", "jsonl"])
+def test_rows_of_one_block_that_fitted_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, format: str
+) -> None:
+    """A table that is evaluated whole is one block."""
+    table, whole = random_table(60_000), io.BytesIO()
+    write_table(stream_of(table), format, whole)
+    lines = whole.getvalue().splitlines(keepends=True)
+    fitted = [0]
+    write = room._write_all
+
+    def write_all(stream, data) -> None:
+        if fitted[0] + len(data) > len(whole.getvalue()) // 2:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        fitted[0] += len(data)
+        write(stream, data)
+
+    monkeypatch.setattr(room, "_write_all", write_all)
+    monkeypatch.setattr(room, "HELD_BYTES", 10)
+    style = CsvStyle(threads=1)
+    with (
+        pytest.raises(UsageError) as caught,
+        OutputFolder(tmp_path / "out") as output,
+        output.begin(f"t.{format}") as file,
+    ):
+        write_table(stream_of(table), format, file, style, TextRoom(1 << 16))
+    rows = int(str(caught.value).partition(" after ")[2].partition(" rows: ")[0])
+    header = format == "csv"
+    assert 0 < rows < len(lines) - header
+    assert sum(map(len, lines[: rows + header])) == fitted[0]
 
 
 def test_a_full_disk_is_told_of_a_small_file_with_its_rows(
