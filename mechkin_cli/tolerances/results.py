@@ -12,8 +12,8 @@ CONDITION_NEAR_SINGULAR: Final = 1e7
 """1 / smallest singular value of the scaled block: above it a row keeps fewer than nine digits."""
 
 CONDITION_DIGITS: Final = 0.01
-"""Parts by which a row's condition may be wrong: it comes from a fixed number of inverse
-iterations."""
+"""Parts by which a row's condition may be wrong: it comes from powers of a
+matrix."""
 
 CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still

@@ -188,17 +188,14 @@ inline Numbers largest_eigenvalue(Numbers* power, Numbers* other, int n) {
 // The sum of the squares of a symmetric matrix's entries, the trace of its square, by the upper half.
 template <int N, class Numbers>
 MECHKIN_INLINE Numbers square_sum(const Numbers* a) {
-  Numbers diagonal = {}, above = {};
+  Numbers sum = {};
   each_of<N>([&](auto i) __attribute__((always_inline)) {
-    each_of<N - i()>([&](auto off) __attribute__((always_inline)) {
-      const Numbers x = a[upper<N>(i(), i() + off())];
-      if constexpr (off() == 0)
-        diagonal += x * x;
-      else
-        above += x * x;
+    each_of<N>([&](auto j) __attribute__((always_inline)) {
+      const Numbers x = a[upper<N>(i(), j())];
+      sum += x * x;
     });
   });
-  return diagonal + (above + above);
+  return sum;
 }
 
 // The part of the largest eigenvalue's power p up to which those of all others together are passed over: with their sum s in
@@ -225,6 +222,10 @@ struct LargestOfSmall {
     }
     return all(everywhere);
   }
+  MECHKIN_INLINE Singles take_rest(Singles now) {
+    for (int k = 0; k < PACKS_OF_ESTIMATE; ++k) take(k, now, all_lanes(true));
+    return value;
+  }
   MECHKIN_INLINE void take(int k, Singles now, Mask these) {
     const Pack mine = select(these & ~found[k], half_of(now, k), half_of(value, k));
     put_half(value, k, __builtin_convertvector(mine.v, HalfSingles));
@@ -236,22 +237,14 @@ MECHKIN_INLINE Singles largest_eigenvalue_of_small(Singles* power) {
   static_assert(N <= 6);
   Singles other[N * N];
   LargestOfSmall largest;
-  upper_gram<N, true>(power, other);
-  Singles t1 = upper_gram<N, true>(other, power);
-  if (largest.take_far_ones(t1, square_sum<N>(power), 2)) return largest.value;
-  t1 = upper_gram<N, true>(power, other);
-  if (largest.take_far_ones(t1, square_sum<N>(other), 3)) return largest.value;
-  t1 = upper_gram<N, true>(other, power);
-  Singles t2 = {};
-  each_of<N>([&](auto i) __attribute__((always_inline)) {
-    each_of<N>([&](auto j) __attribute__((always_inline)) {
-      const Singles x = power[upper<N>(i(), j())];
-      t2 += x * x;
-    });
-  });
-  const Singles last = eigenvalue_of(t1, t2, N, 4);
-  for (int k = 0; k < PACKS_OF_ESTIMATE; ++k) largest.take(k, last, all_lanes(true));
-  return largest.value;
+  for (bool again = false;; again = true) {
+    Singles t1 = upper_gram<N, true>(power, other);
+    if (again && largest.take_far_ones(t1, square_sum<N>(other), 3)) return largest.value;
+    t1 = upper_gram<N, true>(other, power);
+    const Singles t2 = square_sum<N>(power);
+    if (again) return largest.take_rest(eigenvalue_of(t1, t2, N, 4));
+    if (largest.take_far_ones(t1, t2, 2)) return largest.value;
+  }
 }
 
 // The largest singular value of the inverse of diag(1 / inverse_weight) A diag(column_weight), A as factored.

@@ -114,7 +114,6 @@ struct RowPack {
   bool wants_level;
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
-  Balance balance = {p, w, zero_wrench(), zero_wrench(), false, Pack(0.0)};
 
   Writer writer(double* base) const { return {base, in.rows, in.row, in.count}; }
 
@@ -241,8 +240,8 @@ struct RowPack {
         write_output(p, w, balance, RowValues{r, in}, output_of(r, o), out);
   }
   Pack rate_by_leader(int t) const { return in.get(r.constraint_rates, t); }
-  void begin_balance() {
-    balance.moving = r.demand & DEMAND_VELOCITY;
+  Balance no_forces() const { return {p, w, zero_wrench(), zero_wrench(), bool(r.demand & DEMAND_VELOCITY), Pack(0.0)}; }
+  void begin_balance(Balance& balance) const {
     const RowValues row_values = {r, in};
     const Mask undefined = evaluate_loads(p, w, row_values);
     if (r.loads)
@@ -251,7 +250,7 @@ struct RowPack {
       for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
     ::begin_balance(balance, r.demand & DEMAND_ACCELERATION, r.shift, row_values, [this](int t) { return rate_by_leader(t); });
   }
-  void finish_balance() {
+  void finish_balance(Balance& balance) const {
     const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
     const RowValues row_values = {r, in};
     if (solves_friction_together(p)) ::finish_balance(balance, r.shift, [this](int t) { return rate_by_leader(t); });
@@ -331,19 +330,18 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
       for (int j = 0; j < p.rest_count; ++j) jerk_link(p, k.w, p.rest[j]);
     });
   }
-  each([&](RowPack& k) {
-    k.write_motion();
-    if (r.demand & DEMAND_FORCES)
-      k.begin_balance();
-    else if (r.outputs)
-      k.write_outputs(nullptr);
-  });
-  if (!(r.demand & DEMAND_FORCES)) return;
+  each([&](RowPack& k) { k.write_motion(); });
+  if (!(r.demand & DEMAND_FORCES)) {
+    if (r.outputs) each([&](RowPack& k) { k.write_outputs(nullptr); });
+    return;
+  }
+  Balance balance[] = {pack[0].no_forces(), pack[count - 1].no_forces()};
+  each([&](RowPack& k) { k.begin_balance(balance[&k - pack]); });
   if (solves_friction_together(p)) {
     Rubbing* const rubbing[] = {&pack[0].w.rubbing, &pack[count - 1].w.rubbing};
     solve_frictions(p, rubbing, count);
   }
-  each([&](RowPack& k) { k.finish_balance(); });
+  each([&](RowPack& k) { k.finish_balance(balance[&k - pack]); });
 }
 
 // Room for a workspace that stays laid out, before the arrays that it names.
