@@ -106,8 +106,8 @@ def with_labels(command: AnalyzeCommand, model: Model) -> AnalyzeCommand:
             raise UsageError(f"--columns: {text[:LONGEST_NAME]} has a quote that does not end")
         asked += [cell if cell in known else cell.strip() for cell in cells]
     if not asked:
-        some = ", ".join([*known][:MOST_LABELS])
-        raise UsageError(f"--columns: no label is given; columns are {some}")
+        first = ", ".join([*known][:MOST_LABELS])
+        raise UsageError(f"--columns: no label is given; columns are {first}")
     for label in asked:
         if label not in known:
             some = [*list(known)[:MOST_LABELS], *(["..."] if len(known) > MOST_LABELS else [])]

@@ -11,7 +11,7 @@ from references import FILE_OF, SWEPT
 from sweep.cut import cut
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism import LEDGER_KINDS, LongRun, Span
+from mechkin_cli.mechanism import LongRun, Span
 from mechkin_cli.tables import Columns, Words
 
 
