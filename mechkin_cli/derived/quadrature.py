@@ -24,7 +24,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.tolerances import NEXT_TO_END, NEXT_TO_ZERO, TURNS_NOT
+from mechkin_cli.tolerances import (
+    LEAST_PIECES,
+    MOST_PIECES,
+    NEXT_TO_END,
+    NEXT_TO_ZERO,
+    TURNS_NOT,
+)
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
@@ -340,6 +346,7 @@ def integrals(
     span = float(high[-1] - low[0]) if low.size else 0.0
     values, errors = np.zeros((2, allowed.size, low.size))
     own, largest = np.arange(low.size), 0.0
+    most = max(MOST_PIECES * low.size, LEAST_PIECES)
     for left in range(ROUNDS, -1, -1):
         if not low.size:
             break
@@ -353,7 +360,9 @@ def integrals(
         good = (error <= allowed[:, None] * (high - low)).all(axis=0)
         # halving does not help where there is no value anywhere near
         good |= ~np.isfinite(fine).any(axis=0)
-        final = (good & np.array([not each for each in cuts], dtype=bool)) | (left == 0)
+        final = good & np.array([not each for each in cuts], dtype=bool)
+        if left == 0 or np.count_nonzero(~final) > most:
+            final[:] = True  # their errors say how good they are
         for piece in np.flatnonzero(final):
             values[:, own[piece]] += fine[:, piece]
             errors[:, own[piece]] += error[:, piece]

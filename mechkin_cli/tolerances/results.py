@@ -135,6 +135,14 @@ POWER_INTEGRAL: Final = 1e-13
 distance: a few hundred roundings of a power, the difference of efforts with friction and without.
 """
 
+MOST_PIECES: Final = 16
+"""Pieces of an interval, of all of them on average, that may still be open: at a jump one of each
+two halves is, so that sixteen are eight jumps. Where a power has no digits, as beside a branch
+point, no piece ever gets as good as is allowed, and twice as many are open with each halving."""
+
+LEAST_PIECES: Final = 256
+"""Pieces that may be open however few intervals there are: of one interval a hundred jumps."""
+
 NEXT_TO_END: Final = 1.0 - 1e-4
 """Where the ends of a piece of an integral are sampled, in parts of its half: off the end, since a
 zero that parts pieces, and what is next to it, is known to rounding only."""

@@ -149,6 +149,19 @@ def test_an_integral_between_kinks_that_nothing_tells():
     assert (np.abs(values[0] - wanted) <= errors[0] + 1e-15).all()
 
 
+def test_what_has_no_digits_ends_with_its_error() -> None:
+    """Of noise no piece is ever good, and each halving would leave twice as many."""
+    random, places = np.random.default_rng(1), []
+
+    def sample(at):
+        places.append(at.size)
+        return random.normal(size=(1, at.size)), np.empty((0, at.size))
+
+    _, errors = integrals(np.arange(4.0), np.arange(4.0) + 1.0, sample, np.array([1e-13]))
+    assert sum(places) < 20_000
+    assert (errors > 1e-3).all()
+
+
 def test_balls_that_rub_part_no_intervals():
     """Friction at a ball alone: no coordinate tells of its slip."""
     text = SLIDER.replace("C: {{type: R,", "C: {{type: S,").replace(
