@@ -88,7 +88,6 @@ class Problem:
     responses: Mapping[str, ResponseProblem] = field(default_factory=dict)
     response: ResponseProblem | None = None
     limits: tuple[Limit, ...] = ()
-    _alike: Problem | None = field(default=None, init=False, repr=False, compare=False)
 
     def part(self, first: int, last: int) -> Problem:
         """The problem of the rows from `first` to `last`, both included; it has the same
@@ -161,7 +160,7 @@ class Problem:
     def with_quantities_of(self, other: Problem) -> Problem:
         """This problem, which has the quantities of another: links, joints and inputs of the same
         names and kinds."""
-        object.__setattr__(self, "_alike", other)
+        object.__setattr__(self, "_quantities", other.quantities())
         return self
 
     def quantities(self) -> Mapping[str, Wanted]:
@@ -221,8 +220,6 @@ class Problem:
 
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:
-        if self._alike is not None:
-            return self._alike.quantities()
         if self.motion.span is None:
             return Catalogue(self._quantities_of, self._coordinates_of)
         # a catalogue holds what it is of: the numbers of a part's rows go with their part
