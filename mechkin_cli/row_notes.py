@@ -162,21 +162,23 @@ class _Sum(NamedTuple):
 
 
 MOST_ALIKE = 4
-"""Messages of one kind, each about a place of its own, that a run in parts has at most."""
+"""Messages of one kind, each about a place of its own, beyond which parts of a run add none: those
+of its first part, which has what is said of the mechanism, are all told."""
 
 
 class Notes:
     """The messages of all parts of a run, each once.
 
     Those about rows are about the rows of all parts; of others those that are alike count once, and
-    of each kind the first few are told.
+    of each kind those of the first part are told, and the first few.
     """
 
-    def __init__(self, run_rows: int, most_alike: int = MOST_ALIKE) -> None:
-        self._run_rows, self._most_alike = run_rows, most_alike
+    def __init__(self, run_rows: int) -> None:
+        self._run_rows = run_rows
         self._found: dict[Hashable, _Sum | Diagnostic] = {}
-        self._counts: dict[str, int] = {}
-        self._last: dict[str, Diagnostic] = {}
+        self._parts = 0
+        self._left_out: dict[str, int] = {}
+        self._told: dict[str, list[Diagnostic]] = {}
 
     def add(self, notes: Iterable[Note], first: int = 0, own: slice = slice(None)) -> None:
         """Adds those of a part whose first row has the number `first` from 0 and of which the rows
@@ -185,9 +187,13 @@ class Notes:
             if isinstance(one, RowNote):
                 self._add_rows(one, first, own)
             elif one not in self._found:
-                count = self._counts[one.code] = self._counts.get(one.code, 0) + 1
-                if count <= self._most_alike:
-                    self._found[one] = self._last[one.code] = one
+                alike = self._told.setdefault(one.code, [])
+                if self._parts == 0 or len(alike) < MOST_ALIKE:
+                    self._found[one] = one
+                    alike.append(one)
+                else:
+                    self._left_out[one.code] = self._left_out.get(one.code, 0) + 1
+        self._parts += 1
 
     def _add_rows(self, one: RowNote, first: int, own: slice) -> None:
         is_own = np.zeros(one.where.size, dtype=bool)
@@ -221,8 +227,8 @@ class Notes:
         ]
 
     def _counted(self, one: Diagnostic) -> Diagnostic:
-        more = self._counts[one.code] - self._most_alike
-        if more <= 0 or one is not self._last[one.code]:
+        more = self._left_out.get(one.code, 0)
+        if not more or one is not self._told[one.code][-1]:
             return one
         return one._replace(message=f"{one.message} (and {more} more such messages)")
 
@@ -233,6 +239,6 @@ def told(notes: Sequence[Note], first: int, run_rows: int) -> Sequence[Diagnosti
     alone = [one for one in notes if not isinstance(one, RowNote)]
     if len(alone) == len(notes):
         return alone
-    every = Notes(run_rows, most_alike=len(notes))
+    every = Notes(run_rows)
     every.add(notes, first)
     return every.found()

@@ -5,7 +5,6 @@ The file's own design comes from `building`; `variants` derives designs with oth
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from functools import cache, cached_property
 from pathlib import Path
@@ -80,7 +79,8 @@ class Design:
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
-        return Session.of(self.problem, self.graph).reading(lambda: self.precise)
+        session = Session.of(self.problem, self.graph, known=self.built.structure)
+        return session.reading(lambda: self.precise)
 
     @cached_property
     def precise(self) -> Precise:
@@ -158,6 +158,8 @@ def _from_text(
 ) -> Design:
     """A design of the text that another had, or of the data that its text was made from."""
     if is_data:
+        import json
+
         source = building.open_data(json.loads(text), file, overrides, folder, tables)
     else:
         source = building.open_text(text, file, overrides, folder, tables)

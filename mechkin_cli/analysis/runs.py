@@ -11,7 +11,6 @@ import numpy as np
 from mechkin_cli import response as response_room, statics, tolerances
 from mechkin_cli.analysis.analysis import Analysis
 from mechkin_cli.analysis.design import Design
-from mechkin_cli.analysis.stream import Beside, Stream
 from mechkin_cli.arguments import (
     Setting,
     a_setting,
@@ -37,6 +36,7 @@ from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.analysis import Solvable
+    from mechkin_cli.analysis.stream import Stream
     from mechkin_cli.building import Built
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.expressions import Quantity
@@ -288,7 +288,8 @@ def _asked(
     if mode is not None:
         a_text("mode", mode, '"A"')
         session = session.in_mode(mode)
-    session = statics.rested(session)
+    if problem.motion.rest is not None:
+        session = statics.rested(session)
     layouts = chosen_tables(model.built, tables, SWEEP)
     balances = chosen(model.built.balances, tables)
     named = wanted_names(session, SWEEP, (), quantities)
@@ -355,6 +356,8 @@ def _stream_sweep(
     lanes: int,
     threads: int,
 ) -> Stream:
+    from mechkin_cli.analysis.stream import Beside, Stream
+
     packing = a_packing(lanes, threads)
     rows = a_whole_number("rows", rows, "rows of a block", least=1)
     asked = _asked(model, quantities, tables, mode, None, packing)
@@ -374,6 +377,8 @@ def _stream_response(
     lanes: int,
     threads: int,
 ) -> Stream:
+    from mechkin_cli.analysis.stream import Stream
+
     packing = a_packing(lanes, threads)
     rows = a_whole_number("rows", rows, "rows of a block", least=1)
     run = response_name(model.design.at_responses.problem, name)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "builder": "Built build graph_as_built motion_as_built",
+        "builder": "Built build graph_as_built motion_as_built read_and_build",
         "cables": "DrawnCable",
         "drawn_wheels": "DrawnBelt DrawnScrew DrawnWheel",
         "edit": "Edited edit_parameters value_text",

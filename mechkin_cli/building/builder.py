@@ -5,7 +5,7 @@ then limits on well-formed files, named expressions, unused parameters.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
@@ -100,6 +100,7 @@ if TYPE_CHECKING:
     from mechkin_cli.building.view import ViewSettings
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import AnyBalance, ResponseProblem
+    from mechkin_cli.session import Structure
 
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
@@ -109,7 +110,8 @@ _NO_GRAPHS: Mapping[str, SolverGraph | Diagnostic] = MappingProxyType({})
 class Built(NamedTuple):
     """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
     tables, the source it names, the file as read and its document, its runs by name, the solver
-    graphs at the starts of its responses, coefficients, balances, and the settings of its view."""
+    graphs at the starts of its responses, coefficients, balances, the settings of its view, and the
+    mechanism in the kernel as it was looked at on the way."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
@@ -123,6 +125,7 @@ class Built(NamedTuple):
     coefficients: tuple[CoefficientsLayout, ...] = ()
     balances: tuple[AnyBalance, ...] = ()
     view: ViewSettings | None = None
+    structure: Structure | None = None
 
     def tables_of(self, run: str) -> tuple[TableLayout, ...]:
         """The tables that read a run."""
@@ -160,7 +163,8 @@ def build(
     balances = _balances(fields, file, problem)
     coefficients = build_coefficients(fields, file, problem, tables)
     view = _view(fields, file, problem)
-    forces = needs_forces(problem, own)
+    with_names, used = problem, used_by(problem, own)
+    forces = bool(demand_of(problem.mechanism, used) & Demand.FORCES)
     # the unit of forces that are computed stands above their column
     if file.loads or any(run.efforts for run in file.free_runs.values()):
         note_force_unit(fields)
@@ -169,14 +173,17 @@ def build(
     problem = replace(problem, follow=build_follow(fields, file.follow, problem.mechanism.joints))
     if not fields.error_count:
         problem = replace(problem, held=held_of(problem))
-    graph = _graph(fields, file, problem)
-    if isinstance(graph, SolverGraph) and is_home_singular(Session.of(problem, graph)):
-        held = mobility.held_to_family(problem, alike)
-        if held != problem.held:
-            problem = replace(problem, held=held)
-            graph = _graph(fields, file, problem)
+    graph, structure = _graph(fields, file, problem), None
     if isinstance(graph, SolverGraph):
-        check_spins(fields, problem, own)
+        session = Session.of(problem, graph)
+        structure = session.structure
+        if is_home_singular(session):
+            held = mobility.held_to_family(problem, alike)
+            if held != problem.held:
+                problem = replace(problem, held=held)
+                graph = _graph(fields, file, problem)
+    if isinstance(graph, SolverGraph):
+        check_spins(fields, problem, used)
         problem = settled(problem)
     graphs: Graphs = {}
     if problem.responses and graph is not None:
@@ -189,9 +196,21 @@ def build(
     if file.parameters:
         note_unused(fields)
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
+    if not problem.held and problem.mechanism is with_names.mechanism:
+        problem = problem.with_quantities_of(with_names)
     read = (bool(file.tables), file.source or "", file, document)
-    others = (coefficients, balances, view)
+    others = (coefficients, balances, view, structure)
     return Built(problem, graph, tables, *read, runs_of(file), graphs, *others)
+
+
+@without_collection()
+def read_and_build(read: Callable[..., tuple[MechanismFile, Document]], *args: Any) -> Built:
+    """What `read` gives of a file, a text or data, built.
+
+    Raises:
+        UsageError, InvalidFile: as `read` and `build`.
+    """
+    return build(*read(*args))
 
 
 def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> Problem:
@@ -317,18 +336,15 @@ def build_problem(
     return replace(problem, responses=build_responses(*args))
 
 
-def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
-    """Notes links that spin freely and have a cause to spin, where forces or energies are read."""
-    if needs_all_links(problem.mechanism, _used(problem, tables)):
+def check_spins(fields: Fields, problem: Problem, used: Sequence[Wanted]) -> None:
+    """Notes links that spin freely and have a cause to spin, where `used` quantities are forces or
+    energies."""
+    if needs_all_links(problem.mechanism, used):
         note_spins(fields, problem)
 
 
-def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
-    """Whether some column reads a force."""
-    return bool(demand_of(problem.mechanism, _used(problem, tables)) & Demand.FORCES)
-
-
-def _used(problem: Problem, tables: Sequence[TableLayout]) -> list[Wanted]:
+def used_by(problem: Problem, tables: Sequence[TableLayout]) -> list[Wanted]:
+    """The quantities that some tables read."""
     quantities = problem.quantities()
     return [quantities[name] for name in used_quantities(tables, quantities)]
 

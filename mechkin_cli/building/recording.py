@@ -15,7 +15,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli import idle
-from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields
+from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields, used_by
 from mechkin_cli.building.datum import exact_numbers
 from mechkin_cli.building.exact_motion import (
     exact_moment,
@@ -193,7 +193,7 @@ def record(built: Built, names: Sequence[str], *, motion: bool = True) -> tuple[
     problem = build_problem(fields, built.file, responses=False, motion=kept)
     problem = _completed(problem, base, base.held)
     _refuse_varied_lines(problem)
-    check_spins(fields, problem, built.tables_of(SWEEP))
+    check_spins(fields, problem, used_by(problem, built.tables_of(SWEEP)))
     _refuse_errors(fields)
     return recorder, settled(problem)
 

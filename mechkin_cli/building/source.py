@@ -31,13 +31,17 @@ _NO_TABLES: Mapping[str, bytes] = MappingProxyType({})
 @contextmanager
 def without_collection() -> Iterator[None]:
     """No search for garbage: what a file is made into lives on, and to look through it again and
-    again takes a third of the time of a machine of a thousand loops."""
+    again takes a third of the time of a machine of a thousand loops. What is much is looked through
+    once, and counts as old from then on."""
     was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if was_enabled:
+            young, middle, _ = gc.get_threshold()
+            if gc.get_count()[0] > young * middle > 0:
+                gc.collect(1)
             gc.enable()
 
 

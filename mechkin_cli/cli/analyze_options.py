@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -94,6 +93,8 @@ def with_labels(command: AnalyzeCommand, model: Model) -> AnalyzeCommand:
     """
     if command.columns is None:
         return command
+    import csv
+
     wanted = table_room.chosen(tuple(model.tables), command.table)
     labels = {table.name: [column.label for column in table.columns] for table in wanted}
     known = dict.fromkeys(label for listed in labels.values() for label in listed)

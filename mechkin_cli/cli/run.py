@@ -120,7 +120,8 @@ def _run() -> int:
 
 
 def _failed(error: Exception) -> int:
-    if isinstance(error, MemoryError):
+    # a thread's stack is memory, too
+    if isinstance(error, MemoryError) or "can't start new thread" in str(error):
         say("mechkin: the memory is used up; take fewer rows, columns or tables")
         return ExitCode.USAGE
     if isinstance(error, OSError) and error.filename is None:

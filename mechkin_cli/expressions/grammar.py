@@ -133,6 +133,8 @@ _SIGN_BINDING = 30
 _POWERS = ("^", "**")
 _CALLED = FUNCTIONS | FORMS
 _COMPONENTS = (".x", ".y", ".z")
+_ONE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
+_NO_NAMES = {"and", "or", "not", "pi", *_CALLED}
 
 
 def parse_nodes(text: str) -> tuple[Node, ...]:
@@ -141,6 +143,8 @@ def parse_nodes(text: str) -> tuple[Node, ...]:
     Raises:
         ExpressionError: the text is not an expression, or exceeds a limit.
     """
+    if _ONE_NAME.fullmatch(text) and text not in _NO_NAMES and len(text) <= MAX_TEXT_LENGTH:
+        return (Name(text, 0),)  # as most columns are
     parser = _Parser(tokenize(text))
     parser.expression(0)
     parser.finish()

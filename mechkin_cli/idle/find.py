@@ -140,6 +140,9 @@ def common_motions(
             seen = screw if at is GROUND else _displaced(screw, at)
             entries = tuple(outward * entry for entry in (*seen[0], *seen[1]))
             columns.append((number, (joint.name, own), entries))
+    one_each = [number for number, _, _ in columns] == list(range(len(border)))
+    if one_each and any(_are_independent(columns[0][2], more[2]) for more in columns[1:]):
+        return []  # of joints with one motion each two that differ are enough
     # the twist by the first joint is that by each other
     rows = [
         [
@@ -166,6 +169,19 @@ def common_motions(
     return motions
 
 
+def _are_independent(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Whether two screws have no motion in common: what `_null_space` finds, as most links have
+    two pins apart."""
+    if max(map(abs, one)) < max(map(abs, other)):
+        one, other = other, one
+    pivot = max(range(6), key=lambda i: abs(one[i]))
+    if abs(one[pivot]) <= tolerances.COMMON_MOTION:
+        return False
+    share = other[pivot] / one[pivot]
+    left = (abs(b - a * share) for a, b in zip(one, other, strict=True))
+    return max(left) > tolerances.COMMON_MOTION
+
+
 def _advance_apart(joints: Sequence[Joint]) -> bool:
     """Whether joints that turn about one line advance on it by different leads, so that they turn
     there together nowhere: a lead is written as it is meant, whatever the size of the drawing. A
@@ -188,7 +204,10 @@ class General:
     def seen_from(self, joint: Joint, link: str) -> tuple[Frame, list[Screw]]:
         """The displacement from the drawing of the joint's other link to that of a link, and the
         joint's screws on the latter."""
-        if (joint.name, link) not in self._seen:
+        if (joint.name, link) in self._seen:
+            return self._seen[joint.name, link]
+        first = joint.name, joint.first
+        if first not in self._seen:
             passed = GROUND
             screws: list[Screw] = []
             pitch = joint.pitch / self.size
@@ -207,10 +226,15 @@ class General:
                 part = part._replace(before=before, after=after)
                 own = part.screws(pitch)
                 screws += own if passed is GROUND else [_displaced(s, passed) for s in own]
+                if self._drawn and before == after:
+                    continue  # as drawn its links are where they are
                 passed = passed.carry(self._moved(part, pitch))
-            back = _back(passed)
-            self._seen[joint.name, joint.first] = passed, screws
-            self._seen[joint.name, joint.second] = back, [_displaced(s, back) for s in screws]
+            self._seen[first] = passed, screws
+        passed, screws = self._seen[first]
+        if link == joint.second:
+            back = GROUND if passed is GROUND else _back(passed)
+            on_second = screws if passed is GROUND else [_displaced(s, back) for s in screws]
+            self._seen[joint.name, link] = back, on_second
         return self._seen[joint.name, link]
 
     def _on_track(self, track: Track, at: tuple[float, ...]) -> tuple[float, ...]:

@@ -196,6 +196,12 @@ def markdown_text(
     headers: Sequence[str], columns: Sequence[DecimalColumn | WordColumn], threads: int = 1
 ) -> bytes: ...
 def json_list(column: Floats | WordColumn, threads: int = 1) -> bytes: ...
+def has_fast_checksum() -> bool:
+    """Whether `checksum` is faster here than `zlib.crc32`."""
+
+def checksum(bytes: memoryview, before: int) -> int:
+    """As `zlib.crc32`."""
+
 def extremes(numbers: Floats) -> tuple[int, int, float, float]:
     """Of some numbers (rows,): how many are there (no nan), how many are infinite, the largest and
     the smallest; -inf and inf of none."""
@@ -506,6 +512,27 @@ class Plan:
         lanes: int = 0,
         threads: int = 1,
     ) -> None: ...
+    def balance(
+        self,
+        *,
+        free: Sequence[tuple[int, int, float]],
+        cyclic: Sequence[int],
+        inputs: Floats,
+        states: Floats,
+        stiffness: Floats,
+        turned: Floats,
+        time: Floats,
+        constraint_rates: Floats | None = None,
+        given: int = 0,
+        known: int = 0,
+        limits: tuple[float, float, float, float],
+        steps: int,
+        outputs: Outputs,
+        iterations: int = 0,
+        tests: tuple[float, float, float],
+        lanes: int = 0,
+        threads: int = 1,
+    ) -> int: ...
     def search(
         self,
         *,

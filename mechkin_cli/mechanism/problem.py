@@ -32,7 +32,7 @@ from mechkin_cli.mechanism.derived import (
 from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME, is_told
 from mechkin_cli.mechanism.model import Mechanism, without_effort
-from mechkin_cli.mechanism.motion import Assembly, DrivenInput, Limit, MotionInputs
+from mechkin_cli.mechanism.motion import ORDERS, Assembly, DrivenInput, Limit, MotionInputs
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.quantities import (
     Catalogue,
@@ -40,6 +40,7 @@ from mechkin_cli.mechanism.quantities import (
     ElementsByName,
     bearing_catalogue,
     catalogue,
+    coordinates_of,
     response_quantities,
 )
 from mechkin_cli.mechanism.wanted import Wanted
@@ -223,13 +224,26 @@ class Problem:
         if self._alike is not None:
             return self._alike.quantities()
         if self.motion.span is None:
-            return Catalogue(self._quantities_of)
+            return Catalogue(self._quantities_of, self._coordinates_of)
         # a catalogue holds what it is of: the numbers of a part's rows go with their part
-        return Catalogue(replace(self, motion=self.motion.without_numbers)._quantities_of)
+        held = replace(self, motion=self.motion.without_numbers)
+        return Catalogue(held._quantities_of, held._coordinates_of)
 
     @cached_property
     def _elements(self) -> ElementsByName:
         return ElementsByName(self.mechanism)
+
+    @property
+    def _orders(self) -> int:
+        """How often coordinates and points are differentiated: in a response not for jerks."""
+        return len(ORDERS) if self.response is None else len(ORDERS) - 1
+
+    def _coordinates_of(self, name: str) -> Mapping[str, Wanted]:
+        """The coordinates of a joint and their rates; none of what is no joint."""
+        joint = self.mechanism.joints.get(name)
+        if joint is None:
+            return {}
+        return {one.name: one for one in coordinates_of(joint) if one.order < self._orders}
 
     def _quantities_of(self, word: str | None, coefficients: bool = True) -> Mapping[str, Wanted]:
         """Those whose names have this first word; None: all. Without `coefficients`: those that are
@@ -255,7 +269,7 @@ class Problem:
             found = {
                 name: known
                 for name, known in found.items()
-                if known.order < 3 and known.kind != "error_bound"
+                if known.order < self._orders and known.kind != "error_bound"
             }
             # efforts are given here, and linear in nothing
             linear = self._linear(found)
@@ -267,7 +281,7 @@ class Problem:
             if self.response.search is not None:
                 own = self.response.resting
             found |= own | bearing_catalogue(elements, efforts)
-            return found | {name: known for name, known in derived.items() if known.order < 3}
+            return found | {n: known for n, known in derived.items() if known.order < self._orders}
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(elements, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None and coefficients:

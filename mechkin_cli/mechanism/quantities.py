@@ -22,7 +22,7 @@ from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
-from mechkin_cli.mechanism.pairs import dimension_of, is_angle
+from mechkin_cli.mechanism.pairs import dimension_of, is_angle, joint_type
 from mechkin_cli.mechanism.relation import Relation
 from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.record import NamedTuple
@@ -180,15 +180,20 @@ def _by_word(some: Iterable[T], name: Callable[[T], str]) -> dict[str, list[T]]:
 
 
 class Catalogue(Mapping[str, Wanted]):
-    """Quantities by name, which are made when they are asked for: those of one first word, first
-    without and then with coefficients, or all.
+    """Quantities by name, which are made when they are asked for: coordinates and their rates by
+    joint, others by their first word, first without and then with coefficients, or all.
 
     A mechanism of a thousand loops has a hundred thousand quantities, of which a run reads a few;
-    most are coefficients.
+    most are coefficients, and most of what is read are coordinates.
     """
 
-    def __init__(self, of: Callable[[str | None, bool], Mapping[str, Wanted]]) -> None:
-        self._of = of
+    def __init__(
+        self,
+        of: Callable[[str | None, bool], Mapping[str, Wanted]],
+        moving: Callable[[str], Mapping[str, Wanted]],
+    ) -> None:
+        self._of, self._moving = of, moving
+        self._coordinates: dict[str, Mapping[str, Wanted]] = {}
         self._plain: dict[str, Mapping[str, Wanted]] = {}
         self._own: dict[str, Mapping[str, Wanted]] = {}
         self._every: Mapping[str, Wanted] | None = None
@@ -196,6 +201,12 @@ class Catalogue(Mapping[str, Wanted]):
     def __getitem__(self, name: str) -> Wanted:
         if self._every is not None:
             return self._every[name]
+        joint = name.rpartition(".")[0]
+        known = self._coordinates.get(joint)
+        if known is None:
+            known = self._coordinates[joint] = self._moving(joint)
+        if name in known:
+            return known[name]
         word = name.partition(".")[0]
         if word not in self._plain:
             self._plain[word] = self._of(word, False)
@@ -214,7 +225,8 @@ class Catalogue(Mapping[str, Wanted]):
     @property
     def made(self) -> set[str]:
         """The first words of those made so far one by one."""
-        return {word for some in (self._plain, self._own) for word, own in some.items() if own}
+        some = (self._coordinates, self._plain, self._own)
+        return {first_word(word) for made in some for word, own in made.items() if own}
 
     @property
     def _all(self) -> Mapping[str, Wanted]:
@@ -287,12 +299,26 @@ def coordinate_quantities(mechanism: Mechanism) -> list[Wanted]:
 
 def _of_coordinates(elements: Elements) -> Iterator[Wanted]:
     for joint in elements.joints:
-        for known in joint.type.named:
-            dimension = known.dimension
-            for order, suffix in enumerate(ORDERS):
-                name = f"{joint.name}.{known.name}{suffix}"
-                yield Wanted(name, "coordinate", joint.name, dimension, False, known.name, order)
-                dimension = dimension / TIME
+        yield from coordinates_of(joint)
+
+
+def coordinates_of(joint: Joint) -> Iterator[Wanted]:
+    """The coordinates of a joint and their rates."""
+    owner = joint.name
+    for word, dimension, coordinate, order in _rated(joint.letter, joint.plane, joint.counted):
+        yield Wanted(f"{owner}.{word}", "coordinate", owner, dimension, False, coordinate, order)
+
+
+@cache
+def _rated(letter: str, plane: bool, counted: bool) -> list[tuple[str, Dimension, str, int]]:
+    """The words of a type's coordinates and their rates, with what each is."""
+    found = []
+    for known in joint_type(letter, plane, counted).named:
+        dimension = known.dimension
+        for order, suffix in enumerate(ORDERS):
+            found.append((f"{known.name}{suffix}", dimension, known.name, order))
+            dimension = dimension / TIME
+    return found
 
 
 def _of_joints(elements: Elements) -> Iterator[Wanted]:

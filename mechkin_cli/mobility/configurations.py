@@ -23,6 +23,7 @@ locked.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -43,11 +44,14 @@ from mechkin_cli.mechanism import (
     is_unnamed,
     screws_at,
 )
+from mechkin_cli.mobility.elimination import DampedTriangle, Fronts, regular_motions
 from mechkin_cli.mobility.opened import (
     Loops,
     Pose,
     Poses,
+    Rank,
     displacement,
+    full_rank,
     opened,
     quaternion_of,
     rank_of,
@@ -109,15 +113,26 @@ def closed(part: LoopPart, starts: Floats, sphere: tuple[Floats, Floats] | None 
         active, misses, matrix = active[going], misses[going], matrix[going]
         if not active.size:
             break
-        states[active] = part.moved(states[active], damped_steps(matrix, misses))
+        fronts = part.fronts if sphere is None else None
+        states[active] = part.moved(states[active], damped_steps(matrix, misses, fronts))
     return best
 
 
-def damped_steps(jacobians: Floats, misses: Floats) -> Floats:
-    """Damped steps (places, columns), none longer than the stride."""
-    places, _, columns = jacobians.shape
+def damped_steps(jacobians: Floats, misses: Floats, fronts: Fronts | None = None) -> Floats:
+    """Damped steps (places, columns), none longer than the stride; by `fronts`, or all at once."""
     damping = np.sqrt(np.sum(misses * misses, axis=1))
     damping = np.maximum(damping, tolerances.MOBILITY_DAMPING)
+    if fronts is None:
+        steps = _steps_at_once(jacobians, misses, damping)
+    else:
+        steps = DampedTriangle(fronts, jacobians, misses, damping).solution()
+    longest = np.abs(steps).max(axis=1, initial=0.0)
+    too_long = np.maximum(longest / tolerances.MOBILITY_STRIDE, 1.0)
+    return np.asarray(steps / too_long[:, None])
+
+
+def _steps_at_once(jacobians: Floats, misses: Floats, damping: Floats) -> Floats:
+    places, _, columns = jacobians.shape
     # equations that nothing moves, as those out of a plane, ask for no step
     told = np.any(jacobians != 0.0, axis=(0, 2))
     above = np.concatenate([jacobians[:, told], -misses[:, told, None]], axis=2)
@@ -125,10 +140,7 @@ def damped_steps(jacobians: Floats, misses: Floats) -> Floats:
     below[:, np.arange(columns), np.arange(columns)] = damping[:, None]
     triangle = np.asarray(np.linalg.qr(np.concatenate([above, below], axis=1), mode="r"))
     solved = np.linalg.solve(triangle[:, :columns, :columns], triangle[:, :columns, columns:])
-    steps = solved[:, :, 0]
-    longest = np.abs(steps).max(axis=1, initial=0.0)
-    too_long = np.maximum(longest / tolerances.MOBILITY_STRIDE, 1.0)
-    return np.asarray(steps / too_long[:, None])
+    return np.asarray(solved[:, :, 0])
 
 
 class LoopPart:
@@ -140,13 +152,41 @@ class LoopPart:
     ) -> None:
         self.mechanism, self.loops, self.columns = mechanism, loops, columns
         closed = loops.cut_rows // 6
-        of_cuts = (6 * cuts[cuts < closed][:, None] + np.arange(6)).ravel()
+        own = cuts[cuts < closed]
+        of_cuts = (6 * own[:, None] + np.arange(6)).ravel()
         self.rows = np.concatenate([of_cuts, cuts[cuts >= closed] + 5 * closed])
         self.count = columns.size
+        self.cuts = cuts
+        self.held = 3 * own.size if mechanism.plane else 0
+        """Equations that a plane holds, which nothing moves."""
+
+    @cached_property
+    def fronts(self) -> Fronts | None:
+        """How its loops are eliminated one after the other; None where that does not pay."""
+        if self.cuts.size < tolerances.MOBILITY_LONG_ROW:
+            return None
+        places = np.cumsum([0, *np.where(self.cuts < self.loops.cut_rows // 6, 6, 1)])
+        rows = [np.arange(*ends) for ends in itertools.pairwise(places.tolist())]
+        fronts = Fronts(self.loops.passing[self.cuts][:, self.columns], rows)
+        return fronts if fronts.pays else None
+
+    def rank(self, jacobian: Floats, zero: float) -> Rank:
+        """The rank of its closing, as `rank_of`."""
+        motions = None
+        if self.fronts is not None and self.cuts.size >= tolerances.MOBILITY_LONGER_ROW:
+            motions = regular_motions(self.fronts, jacobian, zero)
+        return rank_of(jacobian, zero) if motions is None else full_rank(jacobian, motions)
+
+    def stresses_in(self, jacobian: Floats, zero: float) -> int:
+        """How many independent stresses it has by the Jacobian (equations, freedoms) of all."""
+        own = jacobian[self.rows[:, None], self.columns]
+        return int(self.rank(own, zero).stresses.shape[1])
 
     def closing(self, states: Floats) -> tuple[Floats, Floats]:
         """Misses (places, rows) and Jacobian (places, rows, columns) at states (places, states)."""
         misses, jacobian = self.loops.closing(states)
+        if jacobian.shape[1:] == (self.rows.size, self.count):
+            return misses, jacobian  # it is the only part
         return misses[:, self.rows], jacobian[:, self.rows[:, None], self.columns]
 
     def moved(self, states: Floats, steps: Floats) -> Floats:
@@ -301,6 +341,13 @@ class Configuration:
         """Twists of the copies against their links, and rates of what couplings keep: (equations,
         freedoms)."""
         return np.asarray(self._closing[1][0])
+
+    @cached_property
+    def moved_by(self) -> tuple[list[list[int]], list[list[int]]]:
+        """The equations and the bodies that each freedom moves."""
+        equations = (np.flatnonzero(column).tolist() for column in self.jacobian.T)
+        bodies = np.any(self.every_twist != 0.0, axis=1).T
+        return list(equations), [np.flatnonzero(column).tolist() for column in bodies]
 
     @property
     def miss(self) -> float:

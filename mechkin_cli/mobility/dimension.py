@@ -190,10 +190,10 @@ def component_at(
     place = state
     for _ in range(tolerances.MOBILITY_TRIES):
         _, jacobians = part.closing(place[None])
-        rank = rank_of(jacobians[0], tolerances.MOBILITY_RANK_REACHED)
+        rank = part.rank(jacobians[0], tolerances.MOBILITY_RANK_REACHED)
         motions = rank.motions
         count = motions.shape[1]
-        if count == 0 or rank.stresses.shape[1] == 0:
+        if count == 0 or rank.stresses.shape[1] == part.held:
             return AssemblyComponent(count, place, motions, tolerances.RANK_ZERO)
         units = (motions @ _frame(random, count)).T
         moves = move[0] * _scaled(units)
@@ -202,7 +202,7 @@ def component_at(
         if not ends.good(move[1]).all():
             raise Unclear("moves do not close again")
         ranks = [
-            rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions.shape[1]
+            part.rank(jacobian, tolerances.MOBILITY_RANK_REACHED).motions.shape[1]
             for jacobian in ends.jacobians
         ]
         if min(ranks) == count:
@@ -232,7 +232,7 @@ def general_places(
         ends = closed(part, part.moved(np.repeat(one.state[None], 2, axis=0), moves))
         good = ends.good(tolerances.MOBILITY_CLOSED)
         for state, jacobian in zip(ends.states[good], ends.jacobians[good], strict=True):
-            motions = rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions
+            motions = part.rank(jacobian, tolerances.MOBILITY_RANK_REACHED).motions
             if motions.shape[1] == one.dimension:
                 known.append(replace(one, state=state, tangents=motions, excess=0, alike=()))
     least = min(one.excess for one in known)
@@ -352,7 +352,7 @@ def freedom_of(
     than a regular place is a doubt. A component along which the columns `rests` and no motions of
     first order but theirs rest is looked at alone, if there is one."""
     _, jacobians = part.closing(state[None])
-    first = rank_of(jacobians[0], tolerances.RANK_ZERO)
+    first = part.rank(jacobians[0], tolerances.RANK_ZERO)
     if not first.clear:
         return LocalFreedom(first, (), first.doubt)
     count = first.motions.shape[1]

@@ -88,13 +88,16 @@ class Motions:
     def stresses(self) -> Floats:
         """Stresses (equations, redundant) at the general configuration."""
         jacobian = self.general.jacobian
+        zero = tolerances.MOBILITY_RANK_REACHED
+        if all(part.stresses_in(jacobian, zero) == part.held for part in self.body.parts):
+            return np.zeros((len(jacobian), 0))
         if not self.body.mechanism.plane:
-            return rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).stresses
+            return rank_of(jacobian, zero).stresses
         # what the plane holds is no constraint: of each cut the moment about z, forces along x, y
         cuts = self.body.loops.cut_rows
         rows = (6 * np.arange(cuts // 6)[:, None] + (2, 3, 4)).ravel()
         rows = np.concatenate([rows, np.arange(cuts, len(jacobian))])
-        inside = rank_of(jacobian[rows], tolerances.MOBILITY_RANK_REACHED).stresses
+        inside = rank_of(jacobian[rows], zero).stresses
         stresses = np.zeros((len(jacobian), inside.shape[1]))
         stresses[rows] = inside
         return stresses
@@ -233,14 +236,15 @@ def _common_motions(configuration: Configuration, links: set[str], border: list[
     the joints around them moves."""
     body = configuration.body
     moving = [column for joint in border for column in body.columns[joint.name]]
-    number = body.loops.number
-    twists = configuration.every_twist[:, :, moving]
-    one = twists[number[min(links)]].copy()
+    number, (of_equations, of_bodies) = body.loops.number, configuration.moved_by
+    near = {number[link] for link in links}.union(*(of_bodies[column] for column in moving))
+    twists = {k: configuration.every_twist[k][:, moving] for k in near}
+    one = twists[number[min(links)]]
     for link in links:
-        twists[number[link]] -= one
-    rest = twists[[number[link] for link in body.links]]
-    rest = rest.reshape(rest.shape[0] * rest.shape[1], len(moving))
-    matrix = np.concatenate([configuration.jacobian[:, moving], rest])
+        twists[number[link]] = twists[number[link]] - one
+    rest = [twists[k] for k in map(number.__getitem__, body.links) if k in near]
+    equations = sorted(set[int]().union(*(of_equations[column] for column in moving)))
+    matrix = np.concatenate([configuration.jacobian[np.ix_(equations, moving)], *rest])
     # what these joints do not move says nothing
     matrix = matrix[np.any(matrix != 0.0, axis=1)]
     _, values, right = np.linalg.svd(matrix, full_matrices=len(matrix) < len(moving))
@@ -293,9 +297,10 @@ def _places(body: Body) -> list[Configuration]:
     start, random = home(body), RandomStarts()
     if not start.assembled:
         return []
-    freedoms = [(p, freedom_of(p, start.state, random)) for p in body.parts]
+    # at a branch point one branch may leave idle what another needs
+    freedoms = [(p, freedom_of(p, start.state, random, regular=True)) for p in body.parts]
     if any(f.doubt or f.dimensions != (f.first.motions.shape[1],) for _, f in freedoms):
-        return []  # at a branch point one branch may leave idle what another needs
+        return []
     motions = Motions(body, start, freedoms)
     places = [motions.general]
     while len(places) < PLACES:

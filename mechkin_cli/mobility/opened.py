@@ -457,3 +457,12 @@ def rank_of(matrix: Floats, zero: float) -> Rank:
     stresses[told, : told.size - rank] = left[:, rank:]
     stresses[still, told.size - rank + np.arange(still.size)] = 1.0
     return Rank(right[rank:].T, stresses, float(values[rank - 1] / below))
+
+
+def full_rank(matrix: Floats, motions: Floats) -> Rank:
+    """The rank of a matrix whose rows are independent but for those of zeros, with the motions that
+    it allows."""
+    still = np.flatnonzero(~matrix.any(axis=1))
+    stresses = np.zeros((len(matrix), still.size))
+    stresses[still, np.arange(still.size)] = 1.0
+    return Rank(motions, stresses, np.inf)

@@ -22,7 +22,7 @@ from mechkin_cli.analysis import (
     stream_run,
 )
 from mechkin_cli.arguments import Setting, a_path, a_text, a_whole_number, settings, texts
-from mechkin_cli.building import Built, build, open_data, open_file, open_text
+from mechkin_cli.building import Built, open_data, open_file, open_text, read_and_build
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.model.parameters import Parameters
@@ -962,11 +962,11 @@ def load(
     """
     place = None if folder is None else a_path("folder", folder)
     if isinstance(path, Mapping):
-        return Model(Design(build(*open_data(path, DATA, _texts(parameters), place)), DATA))
+        return Model(Design(read_and_build(open_data, path, DATA, _texts(parameters), place), DATA))
     if isinstance(path, str) and "\n" in path:
         raise UsageError("path: this is a text of several lines, no path; use loads(text)")
     path = a_path("path", path)
-    return Model(Design(build(*open_file(path, _texts(parameters))), path.stem))
+    return Model(Design(read_and_build(open_file, path, _texts(parameters)), path.stem))
 
 
 def loads(
@@ -993,7 +993,7 @@ def loads(
         shown = text.strip()[:LONGEST_NAME]
         raise UsageError(f"text: this looks like the name of a file; use load({shown!r})")
     place = None if folder is None else a_path("folder", folder)
-    built = build(*open_text(text, name, _texts(parameters), place))
+    built = read_and_build(open_text, text, name, _texts(parameters), place)
     return Model(Design(built, Path(name).stem))
 
 

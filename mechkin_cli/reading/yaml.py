@@ -123,10 +123,17 @@ def pieces_of_sequence(items: list[Node], first: int) -> int:
     return 0
 
 
+_NOTHING = frozenset(("", "~", "null", "Null", "NULL"))
+
+
 def is_empty(node: Node) -> bool:
     """Whether YAML reads the node as 'no value'."""
-    nothing = ("", "~", "null", "Null", "NULL")
-    return isinstance(node, ScalarNode) and node.style is Style.PLAIN and node.text in nothing
+    return isinstance(node, ScalarNode) and node.style is Style.PLAIN and node.text in _NOTHING
+
+
+def _is_questionable(node: Node) -> bool:
+    """Whether a node might be empty or cut off; of most one sees at once that they are not."""
+    return isinstance(node, ScalarNode) and (node.text in _NOTHING or "(" in node.text)
 
 
 def cut_at_comma(scalar: ScalarNode, line: str, file: str) -> Diagnostic:
@@ -173,7 +180,12 @@ def _nesting(line: str) -> tuple[list[int], dict[int, list[int]]]:
 
 
 _WRITE_OUT = "write the value out, or use a parameter; put a text that starts with {} in quotes"
-_STYLES = {"'": Style.SINGLE_QUOTED, '"': Style.DOUBLE_QUOTED, "|": Style.BLOCK, ">": Style.BLOCK}
+_STYLES: dict[str | None, Style] = {
+    "'": Style.SINGLE_QUOTED,
+    '"': Style.DOUBLE_QUOTED,
+    "|": Style.BLOCK,
+    ">": Style.BLOCK,
+}
 
 
 class TooDeepError(Exception):
@@ -201,12 +213,15 @@ class TreeBuilder:
     def take(self, event: events.Event) -> None:
         """Add one scalar, alias, or the start or end of a list or mapping."""
         if isinstance(event, events.ScalarEvent):
-            has_properties = self._check_properties(event)
-            self._check_escapes(event)
-            style = _STYLES.get(event.style or "", Style.PLAIN)
-            if has_properties and not event.value:
-                style = Style.SINGLE_QUOTED  # one message about this scalar is enough
-            self._add(ScalarNode(event.value, mark_of(event), style))
+            written, mark = event.style, mark_of(event)
+            style = _STYLES.get(written, Style.PLAIN)
+            if event.anchor is not None or event.tag is not None:
+                self._check_properties(event)
+                if not event.value:
+                    style = Style.SINGLE_QUOTED  # one message about this scalar is enough
+            if written == '"':
+                self._check_escapes(event)
+            self._add(ScalarNode(event.value, mark, style))
         elif isinstance(event, (events.SequenceStartEvent, events.MappingStartEvent)):
             self._check_properties(event)
             self._open(mark_of(event), isinstance(event, events.MappingStartEvent))
@@ -244,6 +259,11 @@ class TreeBuilder:
             self.root = node
 
     def _sequence(self, items: list[Node], mark: Mark) -> Sequence:
+        if any(map(_is_questionable, items)):
+            self._judge_items(items, mark)
+        return Sequence(tuple(items), mark)
+
+    def _judge_items(self, items: list[Node], mark: Mark) -> None:
         index = 0
         while index < len(items):
             item = items[index]
@@ -258,10 +278,19 @@ class TreeBuilder:
                     self.diagnostics.append(self._cut_at_comma(item))
                 index += pieces
             index += 1
-        return Sequence(tuple(items), mark)
 
     def _mapping(self, children: list[Node], mark: Mark) -> Mapping:
-        pairs = list(zip(children[::2], children[1::2], strict=True))
+        keys, values = children[::2], children[1::2]
+        entries: dict[str, tuple[Mark, Node]] = {}
+        for key, value in zip(keys, values, strict=True):
+            if not isinstance(key, ScalarNode) or _is_questionable(value):
+                break
+            entries[key.text] = key.mark, value
+        if len(entries) < len(keys) or "" in entries or "<<" in entries:
+            entries = self._judged_entries(list(zip(keys, values, strict=True)))
+        return Mapping(entries, mark)
+
+    def _judged_entries(self, pairs: list[tuple[Node, Node]]) -> dict[str, tuple[Mark, Node]]:
         entries: dict[str, tuple[Mark, Node]] = {}
         index = 0
         while index < len(pairs):
@@ -276,7 +305,7 @@ class TreeBuilder:
                     self._report_empty(key)
                 entries[key.text] = key.mark, value
             index += 1 + pieces
-        return Mapping(entries, mark)
+        return entries
 
     def _accepts_key(self, key: Node, entries: dict[str, tuple[Mark, Node]]) -> bool:
         if not isinstance(key, ScalarNode):
@@ -312,18 +341,17 @@ class TreeBuilder:
 
     def _check_properties(
         self, event: events.ScalarEvent | events.SequenceStartEvent | events.MappingStartEvent
-    ) -> bool:
+    ) -> None:
         if event.anchor is not None:
             hint = _WRITE_OUT.format("&")
             self._report("anchor", "anchors (&) are not used here", mark_of(event), hint)
         if event.tag is not None:
             hint = "remove it, or put a text that starts with ! in quotes"
             self._report("tag", "YAML tags (!) are not used here", mark_of(event), hint)
-        return event.anchor is not None or event.tag is not None
 
     def _check_escapes(self, event: events.ScalarEvent) -> None:
         """Escape sequences must not bring in characters that a text cannot hold directly."""
-        if event.style == '"' and (found := INVISIBLE.search(event.value)):
+        if found := INVISIBLE.search(event.value):
             message = f"an escape sequence stands for {character_name(found[0])}"
             hint = "remove it; names and titles are plain text"
             self._report("bad-character", message, mark_of(event), hint)
@@ -404,8 +432,7 @@ def _walk(text: str, file: str, loader: Any, builder: TreeBuilder) -> None:
     documents = 0
     try:
         for count, event in enumerate(yaml.parse(text, Loader=loader)):
-            if isinstance(event, events.DocumentStartEvent):
-                documents += 1
+            documents += isinstance(event, events.DocumentStartEvent)
             if documents > 1 or count > MOST_EVENTS:
                 place = Place(file, *mark_of(event))
                 builder.diagnostics.append(_too_many(place, documents))

@@ -312,6 +312,74 @@ def run(
     return Batch(states, values, first, second, *measured, flags, *acting)
 
 
+def balance(
+    plan: Plan,
+    rows: RowInputs,
+    free: Sequence[tuple[int, int, float]],
+    cyclic: Sequence[int],
+    readout: Readout,
+    stiffness: Floats | None = None,
+    *,
+    known: bool = False,
+    lanes: int = 0,
+    threads: int = 0,
+) -> tuple[int, Floats, Floats, Floats]:
+    """Places at which the loads balance, each by Newton's steps from a guess of its own: how many,
+    from the first one on, come there before one does not, inputs (inputs, places) and states
+    (states, places) of all, and slopes (free, free, places) of the efforts before their last step.
+
+    Args:
+        plan: the kernel's plan.
+        rows: inputs with their whole turns, states, rates by leaders, turns and time of the
+            guesses.
+        free: inputs that nothing drives: number, slot of the effort along it among the outputs,
+            and the effort's unit by that of the input.
+        cyclic: inputs that come again after a whole turn.
+        readout: with these efforts, N*m or N.
+        stiffness: (free, free, places) slopes to go by, nearly those of the places; None: the
+            places' own by differences, and places end before their determinant changes its sign.
+        known: whether the first place is an equilibrium, which stays.
+        lanes: as for `run`.
+        threads: as for `run`.
+
+    Raises:
+        ValueError: shapes, codes or numbers that do not fit the plan or each other.
+    """
+    assert rows.turned is not None
+    assert rows.time is not None
+    count, places = len(free), rows.inputs.shape[-1]
+    inputs, states = (np.array(array, np.float64, order="C") for array in rows[:2])
+    if stiffness is None:
+        slopes, enough = np.empty((count, count, places)), tolerances.EQUILIBRIUM_STEP
+    else:
+        slopes, enough = np.array(stiffness, order="C"), tolerances.REST_CHORD
+    found = plan.balance(
+        free=free,
+        cyclic=cyclic,
+        inputs=inputs,
+        states=states,
+        stiffness=slopes.reshape(count * count, places),
+        turned=np.ascontiguousarray(rows.turned),
+        time=np.ascontiguousarray(rows.time),
+        constraint_rates=_contiguous(rows.constraint_rates),
+        given=int(stiffness is not None),
+        known=int(known),
+        limits=(
+            tolerances.NEWTON_DIFFERENCE,
+            tolerances.CHORD_GAIN,
+            tolerances.REST_ROUNDING,
+            enough,
+        ),
+        steps=tolerances.MOST_CHORDS,
+        outputs=readout.outputs,
+        iterations=tolerances.NEWTON_ITERATIONS,
+        tests=RESIDUAL_TESTS,
+        lanes=width(lanes),
+        threads=threads_for(places, threads),
+    )
+    return found, inputs, states, slopes
+
+
 def turn_count(plan: Plan) -> int:
     """Number of rows of `Followed.turns`."""
     return sum(width for *_, width in _kernel.closing_turns(plan)) + len(_kernel.tree_turns(plan))

@@ -44,6 +44,7 @@ from mechkin_cli.session.kernel_run import (
     Batch,
     PreciseConstants,
     RowInputs,
+    balance,
     run as run_kernel,
 )
 from mechkin_cli.structure import SolverGraph, exchanged, is_redundant, structure_of
@@ -142,6 +143,7 @@ class Session:
         *,
         driven: Sequence[Coordinate] | None = None,
         closed_at: Sequence[str] | None = None,
+        known: Structure | None = None,
         packing: Packing = Packing(),  # noqa: B008 - frozen
     ) -> Session:
         """The session of a problem.
@@ -151,12 +153,19 @@ class Session:
             graph: its solver graph; None builds the best one.
             driven: the inputs, where they are not those of the problem's motion and what is locked.
             closed_at: cut joints to use instead of the best ones.
+            known: a structure that was made before, which is taken where it is of this mechanism,
+                graph and inputs, and no load varies.
             packing: how rows are packed.
 
         Raises:
             UnsolvableGraph: the mechanism cannot be solved as it is driven.
         """
         inputs = list(problem.driven if driven is None else driven)
+        if known is not None and problem.laws is None and closed_at is None:
+            of = known.layout
+            is_same = of.mechanism is problem.laid_mechanism and of.graph is graph
+            if is_same and of.laws is None and known.driven == tuple(inputs):
+                return cls(problem, known, packing=packing)
         graph = graph or solver_graph(problem.solved_mechanism, inputs, closed_at)
         layout = Layout(problem.laid_mechanism, graph, laws=problem.laws)
         cuts = None if closed_at is None else tuple(closed_at)
@@ -431,6 +440,30 @@ class Session:
         packing = self.packing
         return run_kernel(
             self.plan, rows, ask, constants, lanes=packing.lanes, threads=packing.threads
+        )
+
+    def balance(
+        self,
+        rows: RowInputs,
+        free: Sequence[tuple[int, int, float]],
+        cyclic: Sequence[int],
+        readout: Readout,
+        stiffness: Floats | None = None,
+        *,
+        known: bool = False,
+    ) -> tuple[int, Floats, Floats, Floats]:
+        """Places at which the loads balance; arguments as those of `kernel_run.balance`."""
+        packing = self.packing
+        return balance(
+            self.plan,
+            rows,
+            free,
+            cyclic,
+            readout,
+            stiffness,
+            known=known,
+            lanes=packing.lanes,
+            threads=packing.threads,
         )
 
 

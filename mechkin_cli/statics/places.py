@@ -25,6 +25,8 @@ from mechkin_cli.statics.forces import combined, summed
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from numpy.typing import NDArray
+
     from mechkin_cli.plan import Readout
     from mechkin_cli.session import Ending, Exchanged, Session
     from mechkin_cli.show import Bools, Floats
@@ -40,6 +42,37 @@ class Place(NamedTuple):
     inputs: Floats
     state: Floats
     turns: Floats
+
+
+class Places(NamedTuple):
+    """Many places, in kernel units: inputs (inputs, places), states (states, places), turns (turn
+    slots, places) and times (places,), s."""
+
+    inputs: Floats
+    states: Floats
+    turns: Floats
+    times: Floats
+
+    @classmethod
+    def of(cls, place: Place, time: float) -> Places:
+        """One place as many."""
+        return cls(
+            place.inputs[:, None], place.state[:, None], place.turns[:, None], np.array([time])
+        )
+
+    def followed_by(self, others: Places) -> Places:
+        """These and others."""
+        return Places(*(np.concatenate(parts, axis=-1) for parts in zip(self, others, strict=True)))
+
+    def only(self, which: slice | NDArray[np.intp]) -> Places:
+        """Some of them."""
+        return Places(
+            self.inputs[:, which], self.states[:, which], self.turns[:, which], self.times[which]
+        )
+
+    def place(self, number: int) -> Place:
+        """One of them."""
+        return Place(self.inputs[:, number], self.states[:, number], self.turns[:, number])
 
 
 class Forced(NamedTuple):
@@ -133,6 +166,37 @@ class Statics:
         if batch.undefined is not None:
             good &= ~batch.undefined.astype(bool)
         return Forced(efforts, batch.states, good)
+
+    def balanced(
+        self, guesses: Places, stiffness: Floats | None = None, *, known: bool = False
+    ) -> tuple[Places, Floats]:
+        """Places that come to an equilibrium by Newton's steps from guesses, as many from the first
+        one on as do so before one does not, and their stiffness (free, free, places).
+
+        Args:
+            guesses: where the steps start.
+            stiffness: (free, free, places) to go by; None: each place's own, which ends before its
+                determinant changes its sign.
+            known: whether the first place is an equilibrium, which stays.
+        """
+        tied = self.session.constraint_rates
+        if tied is not None:
+            tied = np.repeat(tied[:, :1], guesses.times.size, axis=1)
+        rows = RowInputs(
+            guesses.inputs,
+            guesses.states,
+            constraint_rates=tied,
+            turned=guesses.turns,
+            time=guesses.times,
+        )
+        readout = self.readout
+        slots = (readout.slots[wanted.name].start for wanted in readout.wanted)
+        free = [*zip(self.free, slots, self.units.tolist(), strict=True)]
+        cyclic = np.flatnonzero(self.cyclic).tolist()
+        found = self.session.balance(rows, free, cyclic, readout, stiffness, known=known)
+        count, inputs, states, slopes = found
+        at = Places(inputs, states, guesses.turns, guesses.times)
+        return at.only(slice(0, count)), slopes[:, :, :count]
 
     def largest_at(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Floats:
         """The largest force of one load alone, or of all weights, at each of many places (places,):

@@ -7,7 +7,6 @@ arclength: it gets there, or turns back before (a fold), and the mechanism snaps
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,8 +21,8 @@ from mechkin_cli.row_notes import RowSet
 from mechkin_cli.session import Continued, input_unit
 from mechkin_cli.statics.arc import Arc, End
 from mechkin_cli.statics.newton import Balancing, search
-from mechkin_cli.statics.places import Place, Statics, eigen
-from mechkin_cli.statics.stretch import Places, Stretches
+from mechkin_cli.statics.places import Place, Places, Statics, eigen
+from mechkin_cli.statics.stretch import Stretches
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.verdict import Status
@@ -176,23 +175,10 @@ class _Branch:
 
     def follow(self, row: int, state: Floats) -> _Rows:
         """All rows, from the equilibrium near an assembly at a row on."""
-        driven = self.session.problem.motion.driven
-        one = self.session.part(row, row)
-        own = Statics(one, self.free)
-        start = own.place(self.values[:, row], state)
-        # most are found without knowing what each load does alone
-        for measured in (False, True):
-            coordinates = [driven[k] for k in self.free]
-            balancing = Balancing.of(one, coordinates, measured=measured)
-            try:
-                found = search(balancing, balancing.charted(own, start))
-            except ValueError:
-                return self._nowhere(row)
-            if found.found:
-                break
-        else:
+        start = self.statics.place(self.values[:, row], state)
+        place = self._nearby(row, start) or self._searched(row, start)
+        if place is None:
             return self._nowhere(row)
-        place = balancing.uncharted(own, found.place)
         last, after = self._march(row, place, 1)
         first, before = self._march(row, place, -1)
         if np.isnan(self.least[row]):
@@ -205,6 +191,46 @@ class _Branch:
         notes = self._notes(first, last)
         rest = self.rest._replace(solved=True, first=first, last=last, ends=ends, notes=notes)
         return _Rows(rest, self.values, Continued(place.state, row, place.turns))
+
+    def _nearby(self, row: int, start: Place) -> Place | None:
+        """The equilibrium to which whole Newton's steps lead, each at most half as long as the one
+        before, within a step's reach of a place at a row; None where they do not."""
+        time = self.times[row : row + 1]
+        at, _ = self.statics.balanced(Places.of(start, self.times[row]))
+        if not at.times.size:
+            return None
+        inputs = np.concatenate([start.inputs[:, None], at.inputs], axis=1)
+        if np.abs(at.inputs[:, 0] - start.inputs).max() > tolerances.EQUILIBRIUM_REACH:
+            return None
+        # the steps close the loops from where they begin, and might do so in another assembly
+        way = self.statics.way(inputs, start)
+        if way.reached < inputs.shape[1]:
+            return None
+        there, _ = self.statics.balanced(
+            Places(at.inputs, way.states[:, 1:], way.turns[:, 1:], time)
+        )
+        if not there.times.size or not np.allclose(
+            there.states, at.states, rtol=0.0, atol=tolerances.REST_SMALL
+        ):
+            return None
+        return there.place(0)
+
+    def _searched(self, row: int, start: Place) -> Place | None:
+        """The equilibrium to which a search leads from a place at a row."""
+        driven = self.session.problem.motion.driven
+        one = self.session.part(row, row)
+        own = Statics(one, self.free)
+        # most are found without knowing what each load does alone
+        for measured in (False, True):
+            coordinates = [driven[k] for k in self.free]
+            balancing = Balancing.of(one, coordinates, measured=measured)
+            try:
+                found = search(balancing, balancing.charted(own, start))
+            except ValueError:
+                return None
+            if found.found:
+                return balancing.uncharted(own, found.place)
+        return None
 
     def _nowhere(self, row: int) -> _Rows:
         text = f"no place was found at which the loads balance in row {row + 1}"
@@ -238,9 +264,12 @@ class _Branch:
             for number, own in zip(self.free, taken.free, strict=True):
                 self.values[number, taken.rows] = own
             known += taken.rows.tolist()
-            for number, (begin, end) in enumerate(pairwise([at - step, *taken.nodes.tolist()])):
-                least = _least(taken.stiffness[:, :, number])
-                self.least[begin + step : end + step : step] = least
+            # each node tells of the rows before it, and the last one of those behind it, too
+            least = [_least(matrix) for matrix in taken.stiffness.transpose(2, 0, 1)]
+            ends = np.abs(taken.nodes - at) + 1
+            ends[-1] = taken.rows.size + 1
+            rows = at + step * np.arange(ends[-1])
+            self.least[rows] = np.repeat(least, np.diff(ends, prepend=0))
         return known[-1], None
 
     def _tell(self, row: int, place: Place) -> None:

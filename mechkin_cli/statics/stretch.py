@@ -18,65 +18,51 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.forces import determinant, summed
-from mechkin_cli.statics.places import Place
+from mechkin_cli.statics.forces import determinant
+from mechkin_cli.statics.places import Places
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.statics.places import Statics
+    from mechkin_cli.statics.places import Place, Statics
 
     Rows = NDArray[np.intp]
-
-
-class Places(NamedTuple):
-    """Many places, in kernel units: inputs (inputs, places), states (states, places), turns (turn
-    slots, places) and times (places,), s."""
-
-    inputs: Floats
-    states: Floats
-    turns: Floats
-    times: Floats
-
-    @classmethod
-    def of(cls, place: Place, time: float) -> Places:
-        """One place as many."""
-        return cls(
-            place.inputs[:, None], place.state[:, None], place.turns[:, None], np.array([time])
-        )
-
-    def followed_by(self, others: Places) -> Places:
-        """These and others."""
-        return Places(*(np.concatenate(parts, axis=-1) for parts in zip(self, others, strict=True)))
-
-    def only(self, which: slice | Rows) -> Places:
-        """Some of them."""
-        return Places(
-            self.inputs[:, which], self.states[:, which], self.turns[:, which], self.times[which]
-        )
-
-    def place(self, number: int) -> Place:
-        """One of them."""
-        return Place(self.inputs[:, number], self.states[:, number], self.turns[:, number])
 
 
 class Beside(NamedTuple):
     """What is known about places and beside them.
 
     Attributes:
-        forces: (free, places).
         stiffness: (free, free, places).
         pushes: (ways, free, places) what the forces change by along each way.
-        states: (states, places) closed.
         good: which of all that have values (places,).
     """
 
-    forces: Floats
     stiffness: Floats
     pushes: Floats
-    states: Floats
     good: Bools
+
+
+class Span(NamedTuple):
+    """Rows of a stretch that were predicted together, of which some, the nodes, are corrected.
+
+    Attributes:
+        told: numbers of the known row before it and of the nodes, evenly spaced (1 + nodes,).
+        places: of all these.
+        stiffness: (free, free, 1 + nodes).
+        is_short: whether it ends before half of what was predicted.
+    """
+
+    told: Rows
+    places: Places
+    stiffness: Floats
+    is_short: bool
+
+    @property
+    def size(self) -> int:
+        """Number of its rows up to the last node."""
+        return abs(int(self.told[-1]) - int(self.told[0]))
 
 
 class Taken(NamedTuple):
@@ -110,7 +96,7 @@ class Stretches:
     def __init__(self, statics: Statics, values: Floats, times: Floats) -> None:
         self.statics, self.values, self.times = statics, values, times
         self.free = statics.free
-        self.most = tolerances.MOST_REST_ROWS
+        self.most, self.most_spans = tolerances.MOST_REST_ROWS, tolerances.MOST_REST_SPANS
         # beside a place along each coordinate at rest (inputs, 1 + 2 free, 1)
         count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
         self._steps = np.zeros((len(values), 1 + 2 * count, 1))
@@ -122,43 +108,83 @@ class Stretches:
         """The next rows, in a direction `step` (1 or -1) from the last of those that are known, at
         `place`; None where not even one is surely on the branch.
         """
-        left = self.values.shape[1] - 1 - known[-1] if step > 0 else known[-1]
-        most = min(left, self.most, tolerances.MOST_REST_ROWS)
         while True:
-            predicted = self._predicted(place, known, known[-1] + step * np.arange(1, most + 1))
-            if predicted is None:
+            spans = self._spans(place, known, step)
+            if not spans:
                 return None
-            count = predicted.shape[1]
-            rows = known[-1] + step * np.arange(1, count + 1)
-            taken = self._taken(place, known, rows, predicted)
+            taken = self._filled(place, known, spans)
             if taken is not None:
-                self.most = tolerances.REST_GROWTH * taken.rows.size
                 return taken
-            if count == 1:
-                self.most = 1
+            if len(spans) == 1 and spans[0].size == 1:
                 return None
-            # nodes far apart may fail where the next row does not
-            most = max(1, count // tolerances.REST_GROWTH)
+            self.most, self.most_spans = max(1, spans[0].size // tolerances.REST_GROWTH), 1
+
+    def _spans(self, place: Place, known: list[int], step: int) -> list[Span]:
+        """The next spans, each from the last node of the one before; their nodes are put into
+        `values`."""
+        spans: list[Span] = []
+        told = known[0] + step * np.arange(len(known))
+        while len(spans) < self.most_spans:
+            span = self._span(place, told, step)
+            if span is None:
+                break
+            spans.append(span)
+            place, nodes = span.places.place(-1), span.told[1:]
+            for number in self.free:
+                self.values[number, nodes] = span.places.inputs[number, 1:]
+            told = np.concatenate([told, nodes])
+            if span.is_short:
+                # the rows between the nodes tell more of the branch where it bends
+                break
+        return spans
+
+    def _span(self, place: Place, told: Rows, step: int) -> Span | None:
+        """The next span from the last of some rows whose coordinates at rest are told; None at the
+        end of the rows, or where not even one is told."""
+        here = int(told[-1])
+        left = self.values.shape[1] - 1 - here if step > 0 else here
+        most = min(left, self.most, tolerances.MOST_REST_ROWS)
+        while most:
+            predicted = self._predicted(place, told, here + step * np.arange(1, most + 1))
+            if predicted is None:
+                break
+            count = predicted.shape[1]
+            apart = -(-count // tolerances.REST_NODES)
+            ahead = np.arange(apart, count + 1, apart)
+            nodes, free = here + step * ahead, predicted[:, ahead - 1]
+            guesses = Places.of(place, self.times[here]).followed_by(
+                self._followed(place, nodes, free)
+            )
+            at, stiffness = self.statics.balanced(guesses, known=True)
+            if at.times.size > 1:
+                good = self._smooth(place, at.only(slice(1, None)), free, first=told.size == 1)
+                if good:
+                    own = int(ahead[good - 1])
+                    is_short = 2 * own < count
+                    self.most = own if is_short else tolerances.REST_GROWTH * own
+                    rows = np.concatenate([told[-1:], nodes[:good]])
+                    return Span(
+                        rows, at.only(slice(0, good + 1)), stiffness[:, :, : good + 1], is_short
+                    )
+            # rows far apart may fail where the next one does not
+            most = max(1, count // tolerances.REST_GROWTH) if count > 1 else 0
+        self.most = 1
+        return None
 
     # How rows are predicted.
 
-    def _predicted(self, place: Place, known: list[int], rows: Rows) -> Floats | None:
-        """The coordinates at rest (free, rows) of as many of some rows as can be told from those
-        that are known, one at least; None where the forces have no slopes at the place."""
-        if len(known) == 1:
-            return self._along_rate(place, known[0], rows)
-        most = tolerances.REST_POINTS - 1
-        apart = max(1, min(len(known) - 1, rows.size) // most)
-        points = np.array(known[-1::-apart][: most + 1])
-        # Newton's divided differences, and the terms of his polynomial; it ends with the one that
-        # leaves most rows told
-        differences = self.values[self.free][:, points]
-        start, first = differences[:, :1], []
-        for k in range(1, points.size):
-            differences = (differences[:, 1:] - differences[:, :-1]) / (points[k:] - points[:-k])
-            first.append(differences[:, 0])
+    def _predicted(self, place: Place, told: Rows, rows: Rows) -> Floats | None:
+        """The coordinates at rest (free, rows) of as many of some rows as can be extrapolated from
+        those that are told, one at least; None where the forces have no slopes at the place."""
+        if told.size == 1:
+            return self._along_rate(place, int(told[0]), rows)
+        points = self._points(told, rows.size)
+        values = self.values[np.array(self.free)[:, None], points]
+        # the terms of Newton's polynomial; it ends with the one that leaves most rows told
+        differences = [_divided(own, points.tolist()) for own in values.tolist()]
+        start = values[:, :1]
         ways = np.multiply.accumulate(rows - points[:-1, None], axis=0, dtype=np.float64)
-        terms = np.array(first)[:, :, None] * ways[:, None, :]
+        terms = np.array(differences).T[:, :, None] * ways[:, None, :]
         moved = np.add.accumulate(terms, axis=0)
         small = np.maximum(
             tolerances.SMOOTH_STEP * np.abs(moved).max(axis=1), tolerances.REST_SMALL
@@ -168,6 +194,18 @@ class Stretches:
         told = np.where(near.all(axis=1), rows.size, np.argmin(near, axis=1))
         best = int(np.argmax(told - last[:, 0]))
         return np.asarray((start + moved[best])[:, : max(int(told[best]), 1)])
+
+    @staticmethod
+    def _points(told: Rows, count: int) -> Rows:
+        """Rows among those that are told through which the next `count` ones are extrapolated, the
+        last one first, about as far apart as their number goes."""
+        most = tolerances.REST_POINTS - 1
+        before = told[: -2 - max(count, most) : -1]
+        ago = np.abs(before - told[-1])
+        apart = max(1, min(int(ago[-1]), count) // most)
+        wanted = np.searchsorted(ago, apart * np.arange(most + 1))
+        wanted = wanted[wanted < before.size]
+        return before[wanted[np.diff(wanted, prepend=-1) > 0]]
 
     def _along_rate(self, place: Place, row: int, rows: Rows) -> Floats | None:
         """The same where one row alone is known, by the rate of the branch there."""
@@ -189,35 +227,6 @@ class Stretches:
 
     # How they are corrected.
 
-    def _taken(self, place: Place, known: list[int], rows: Rows, free: Floats) -> Taken | None:
-        apart = -(-rows.size // tolerances.REST_NODES)
-        nodes = np.arange(apart - 1, rows.size, apart)
-        predicted = free
-        at = self._followed(place, rows[nodes], predicted[:, nodes])
-        corrected = self._balanced(place, known[-1], at)
-        if corrected is None or not corrected[0].times.size:
-            return None
-        at, stiffness = corrected
-        nodes = nodes[: at.times.size]
-        rows, predicted = rows[: nodes[-1] + 1], predicted[:, : nodes[-1] + 1]
-        told = np.concatenate([known[-1:], rows[nodes]])
-        if apart > 1:
-            between = self._between(place, told, rows, at, stiffness)
-            if between is None:
-                return None
-            at = between
-        off = np.abs(at.inputs[self.free] - predicted[:, : at.times.size]).max(axis=0)
-        count = self._smooth(place, known, at, off)
-        if not count:
-            return None
-        at, count = self._joined(place, known, at.only(slice(0, count)), closed=apart > 1)
-        if not count:
-            return None
-        free = at.inputs[self.free][:, :count]
-        last = int(np.searchsorted(nodes, count - 1, side="right"))
-        place = at.place(count - 1)
-        return Taken(rows[:count], free, place, told[: last + 1], stiffness[:, :, : last + 1])
-
     def _followed(self, place: Place, rows: Rows, free: Floats) -> Places:
         """Places of rows whose coordinates at rest are given, closed along straight ways from a
         place, as far as the loops can be followed."""
@@ -233,84 +242,56 @@ class Stretches:
             times,
         )
 
-    def _balanced(self, place: Place, row: int, at: Places) -> tuple[Places, Floats] | None:
-        """Places beyond a known one after Newton's steps, as many as reach an equilibrium before
-        which the determinant of the stiffness keeps its sign, and the stiffness (free, free,
-        places + 1) of the known one and theirs."""
-        at = Places.of(place, self.times[row]).followed_by(at)
-        before: Floats | None = None
-        for _ in range(tolerances.MOST_CHORDS):
-            found = self.beside(at)
-            step = _solved(found.stiffness, -found.forces)
-            step[:, 0] = 0.0
-            sizes = np.abs(step).max(axis=0)
-            # steps shrink by squares, until rounding alone is left
-            shrinks = np.isfinite(sizes)
-            gain = np.ones(sizes.size)
-            if before is not None:
-                shrinks = sizes <= tolerances.CHORD_GAIN * before
-                gain = sizes / np.maximum(before, tolerances.EQUILIBRIUM_STEP)
-            kept = _leading(found.good & (shrinks | (sizes <= tolerances.REST_ROUNDING)))
-            if kept < 2:
-                return None
-            inputs = at.inputs[:, :kept].copy()
-            inputs[self.free] += step[:, :kept]
-            at = Places(inputs, found.states[:, :kept], at.turns[:, :kept], at.times[:kept])
-            before, left = sizes[:kept], (shrinks * (sizes * gain * gain))[:kept]
-            if left.max() <= tolerances.EQUILIBRIUM_STEP:
-                sides = _sides(found.stiffness[:, :, :kept])
-                kept = _leading(sides * sides[0] > 0.0)
-                return at.only(slice(1, kept)), found.stiffness[:, :, :kept]
-        return None
-
-    def _between(
-        self, place: Place, told: Rows, rows: Rows, nodes: Places, stiffness: Floats
-    ) -> Places | None:
-        """The places of all rows up to the last of some nodes; None where interpolation does not
-        lead to them. `told` (nodes + 1,) are the rows of the known place and of the nodes,
-        `stiffness` (free, free, nodes + 1) theirs."""
+    def _filled(self, place: Place, known: list[int], spans: list[Span]) -> Taken | None:
+        """The rows of some spans, those between their nodes by interpolation and corrections with
+        the stiffness interpolated likewise, as many as are surely on the branch; None where not
+        even the first one is."""
         count = len(self.free)
-        free = np.concatenate([place.inputs[self.free][:, None], nodes.inputs[self.free]], axis=1)
-        numbers = np.concatenate([free, stiffness.reshape(-1, told.size)])
-        found = _interpolated(told, numbers, rows)
-        slopes = found[count:].reshape(count, count, -1)
-        at = self._followed(place, rows, found[:count])
-        if at.times.size < rows.size:
+        step = 1 if spans[0].told[1] > spans[0].told[0] else -1
+        rows = np.arange(known[-1] + step, int(spans[-1].told[-1]) + step, step)
+        between = []
+        for span in spans:
+            own = rows[abs(int(span.told[0]) - known[-1]) :][: span.size]
+            numbers = [span.places.inputs[self.free], span.stiffness.reshape(-1, span.told.size)]
+            between.append(_interpolated(span.told, np.concatenate(numbers), own))
+        found = np.concatenate(between, axis=1)
+        free, slopes = found[:count], found[count:].reshape(count, count, -1)
+        at = self._followed(place, rows, free)
+        at, _ = self.statics.balanced(at, slopes[:, :, : at.times.size])
+        good = self._smooth(place, at, free, first=len(known) == 1)
+        good = self._joined(place, known, at.only(slice(0, good))) if good else 0
+        if not good:
             return None
-        before = np.inf
-        for _ in range(tolerances.MOST_CHORDS):
-            forces = self.statics.forces(*at)
-            if not forces.good.all():
-                return None
-            step = _solved(slopes, -forces.forces)
-            size = float(np.abs(step).max())
-            grows = not size < tolerances.CHORD_GAIN * before
-            if grows and not size <= tolerances.REST_ROUNDING:
-                return None
-            inputs = at.inputs.copy()
-            if not grows:
-                inputs[self.free] += step
-            at = Places(inputs, forces.states, at.turns, at.times)
-            before = size
-            if grows or size <= tolerances.EQUILIBRIUM_STEP:
-                return at
-        return None
+        if good == rows.size:
+            self.most_spans = min(2 * self.most_spans, tolerances.MOST_REST_SPANS)
+        else:
+            self.most, self.most_spans = tolerances.REST_GROWTH * good, 1
+        nodes = np.concatenate([known[-1:], *(span.told[1:] for span in spans)])
+        stiffness = [spans[0].stiffness[:, :, :1], *(span.stiffness[:, :, 1:] for span in spans)]
+        last = int(np.count_nonzero(np.abs(nodes - known[-1]) <= good))
+        # the place of the last row is followed on from
+        return Taken(
+            rows[:good],
+            at.inputs[self.free][:, :good],
+            at.place(good - 1),
+            nodes[:last],
+            np.concatenate(stiffness, axis=2)[:, :, :last],
+        )
 
     # How they are judged.
 
-    def _smooth(self, place: Place, known: list[int], at: Places, off: Floats) -> int:
-        """How many of some rows are as far from where they were predicted as ones on the branch may
-        be."""
+    def _smooth(self, place: Place, at: Places, free: Floats, *, first: bool) -> int:
+        """How many places were corrected from `free` (free, places) by no more than ones on the
+        branch may be, the `first` rows of which no rate is known before."""
         moved = np.abs(at.inputs[self.free] - place.inputs[self.free][:, None]).max(axis=0)
+        off = np.abs(at.inputs[self.free] - free[:, : moved.size]).max(axis=0)
         moved, off = np.maximum.accumulate(moved), np.maximum.accumulate(off)
-        most = tolerances.REST_MISS if len(known) == 1 else tolerances.SMOOTH_STEP * moved
+        most = tolerances.REST_MISS if first else tolerances.SMOOTH_STEP * moved
         return _leading((off <= most) | (off <= tolerances.REST_SMALL))
 
-    def _joined(
-        self, place: Place, known: list[int], at: Places, *, closed: bool
-    ) -> tuple[Places, int]:
-        """Equilibria in the next rows, and how many of them surely lie on one branch with a place,
-        that of the last row that is known; they are closed again unless they are `closed`.
+    def _joined(self, place: Place, known: list[int], at: Places) -> int:
+        """How many equilibria in the next rows surely lie on one branch with a place, that of the
+        last row that is known.
 
         Short steps that change slowly do: before a fold they grow from row to row. Others do if
         they are those that the rates of the branch at both ends tell.
@@ -324,26 +305,20 @@ class Stretches:
         earlier = first if len(known) < 2 else self.values[self.free, known[-2]]
         before = np.concatenate([(first - earlier)[:, None], steps[:, :-1]], axis=1)
         changes = np.abs(steps - before).max(axis=0)
-        slow = (sizes <= tolerances.SHORT_REST) & (
+        good = (sizes <= tolerances.SHORT_REST) & (
             changes <= tolerances.SLOW_REST * sizes + tolerances.REST_ROUNDING
         )
-        judged = np.flatnonzero(~slow) if closed else np.arange(sizes.size)
-        if not judged.size:
-            return at, sizes.size
-        far = np.abs(ways[self.driven]).max(axis=0, initial=0.0)
-        near = np.maximum(sizes, far) <= tolerances.LONG_REST
-        told, found = self._told(every, ways, judged)
-        good = slow.copy()
-        good[judged] |= told & near[judged]
-        if not closed:
-            good &= found.good[judged.size :]
-            at = at._replace(states=found.states[:, judged.size :])
-        return at, _leading(good)
+        judged = np.flatnonzero(~good)
+        if judged.size:
+            far = np.abs(ways[self.driven]).max(axis=0, initial=0.0)
+            near = np.maximum(sizes, far) <= tolerances.LONG_REST
+            good[judged] = near[judged] & self._told(every, ways, judged)
+        return _leading(good)
 
-    def _told(self, every: Places, ways: Floats, judged: Rows) -> tuple[Bools, Beside]:
+    def _told(self, every: Places, ways: Floats, judged: Rows) -> Bools:
         """Which of the ways to the places numbered `judged` + 1, each from the one before, are told
         by the rates of the branch at both ends, with a stiffness whose determinant keeps its
-        sign; and what is beside the places at their beginnings and ends."""
+        sign."""
         count, ends = judged.size, np.concatenate([judged, judged + 1])
         along = ways[:, judged]
         steps = along[self.free]
@@ -362,10 +337,10 @@ class Stretches:
             & (sides[:count] * sides[count:] > 0.0)
             & (off <= tolerances.JOINED_REST * most + tolerances.REST_ROUNDING)
         )
-        return told, found
+        return told
 
     def beside(self, at: Places, ways: list[tuple[Floats, Floats]] | None = None) -> Beside:
-        """Forces and stiffness at places, and what the forces change by along `ways`: those of the
+        """The stiffness at places, and what the forces change by along `ways`: those of the
         inputs (inputs, places) and of time (places,)."""
         count, h = len(self.free), tolerances.NEWTON_DIFFERENCE
         places, ways = at.times.size, ways or []
@@ -389,12 +364,22 @@ class Stretches:
         changes = (forces[:, 1::2] - forces[:, 2::2]) / (2.0 * h)
         pushes = [changes[:, count + k] * size for k, size in enumerate(sizes)]
         return Beside(
-            forces[:, 0],
             changes[:, :count],
             np.array(pushes),
-            found.states[:, :places],
             np.asarray(found.good.reshape(kinds, places).all(axis=0)),
         )
+
+
+def _divided(values: list[float], points: list[int]) -> list[float]:
+    """Newton's divided differences of values at some points, from the first order on."""
+    found = []
+    for k in range(1, len(points)):
+        values = [
+            (values[i + 1] - values[i]) / (points[i + k] - points[i])
+            for i in range(len(values) - 1)
+        ]
+        found.append(values[0])
+    return found
 
 
 def _leading(good: Bools) -> int:
@@ -417,10 +402,11 @@ def _interpolated(points: Rows, numbers: Floats, rows: Rows) -> Floats:
     met = away == 0
     shares = weights[:, None] / np.where(met, 1.0, away)
     shares = np.where(met.any(axis=0), met, shares)
-    total = np.zeros((len(numbers), rows.size))
+    total, whole = np.zeros((len(numbers), rows.size)), np.zeros(rows.size)
     for point, share in zip(numbers.T, shares, strict=True):
         total += point[:, None] * share
-    return np.asarray(total / summed(shares))
+        whole += share
+    return total / whole
 
 
 def _solved(matrices: Floats, right: Floats) -> Floats:

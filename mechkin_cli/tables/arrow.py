@@ -168,7 +168,8 @@ class _Numbers:
             held[missing] = 0.0  # in place of bits that differ from machine to machine
         else:
             missing = None
-        return arrow.array(held.astype(np.int64) if self._is_whole else held, kind, mask=missing)
+        valid = None if missing is None else np.packbits(~missing, bitorder="little")
+        return _array(arrow, kind, rows, valid, held.astype(np.int64) if self._is_whole else held)
 
 
 class _KnownTexts:
@@ -183,8 +184,7 @@ class _KnownTexts:
         self._held[at : at + count] = column.values.codes[start : start + count]
 
     def array(self, arrow: Any, rows: int, kind: Any) -> Any:
-        codes = arrow.array(self._held[:rows])
-        return arrow.DictionaryArray.from_arrays(codes, arrow.array(self._texts, kind.value_type))
+        return _coded(arrow, self._held[:rows], self._texts, kind.value_type)
 
 
 class _Texts:
@@ -204,10 +204,24 @@ class _Texts:
         self._held[at : at + count] = known[codes]
 
     def array(self, arrow: Any, rows: int, kind: Any) -> Any:
-        texts = arrow.array(list(self._places), kind)
-        self._places = {}
-        codes = arrow.array(self._held[:rows])
-        return arrow.DictionaryArray.from_arrays(codes, texts).dictionary_decode()
+        texts, self._places = list(self._places), {}
+        return _coded(arrow, self._held[:rows], texts, kind).dictionary_decode()
+
+
+def _array(arrow: Any, kind: Any, rows: int, *parts: NDArray[Any] | bytes | None) -> Any:
+    """An array of the parts of its memory; what pyarrow makes of a list or an array of numpy begins
+    with loading pandas, where that is installed."""
+    buffers = [None if part is None else arrow.py_buffer(part) for part in parts]
+    return arrow.Array.from_buffers(kind, rows, buffers)
+
+
+def _coded(arrow: Any, codes: NDArray[np.int32], texts: Sequence[str], kind: Any) -> Any:
+    """A text for each code."""
+    words = [text.encode() for text in texts]
+    ends = np.cumsum([0, *map(len, words)], dtype=np.int32)
+    known = _array(arrow, kind, len(words), None, ends, b"".join(words))
+    of_rows = _array(arrow, arrow.int32(), codes.size, None, codes)
+    return arrow.DictionaryArray.from_arrays(of_rows, known)
 
 
 def _held_column(heading: Heading) -> _Numbers | _KnownTexts | _Texts:

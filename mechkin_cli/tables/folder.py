@@ -14,9 +14,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
-from zlib import crc32
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.file_set import (
     PART,
@@ -156,6 +156,15 @@ _HEAD = "# the files of a run of mechkin analyze: the next one in this folder re
 _LINE = re.compile(r"(?P<sum>[0-9a-f]{8}) (?P<size>[0-9]+) (?P<name>[^/\\\0]+)")
 
 
+def checksum(view: memoryview, before: int) -> int:
+    """CRC-32 of bytes behind others, whose checksum is `before`."""
+    if _kernel.has_fast_checksum():
+        return _kernel.checksum(view, before)
+    from zlib import crc32
+
+    return crc32(view, before)
+
+
 class Digest(NamedTuple):
     """What a file is known by: its checksum and its size."""
 
@@ -195,7 +204,7 @@ def _is_as_written(path: Path, known: Digest) -> bool:
     found = 0
     with open(path, "rb") as stream:
         while part := stream.read(PART):
-            found = crc32(part, found)
+            found = checksum(memoryview(part), found)
     return found == known.checksum
 
 
@@ -244,7 +253,7 @@ class OutputFile(io.RawIOBase):
         view = memoryview(data).cast("B")
         if self._has_failed:
             return view.nbytes
-        self._checksum = crc32(view, self._checksum)
+        self._checksum = checksum(view, self._checksum)
         self._size += view.nbytes
         if self.held is not None and self._size <= HELD_BYTES:
             self.held += view
@@ -277,10 +286,10 @@ class OutputFile(io.RawIOBase):
 
 
 def _write_all(stream: io.FileIO, data: bytearray | memoryview) -> None:
-    """Writes all of the data, in parts: of larger ones the system takes up to twice as long."""
+    """Writes all of the data, as much at a time as the system takes."""
     view = memoryview(data)
     while view:
-        view = view[stream.write(view[:PART]) or 0 :]
+        view = view[stream.write(view) or 0 :]
 
 
 class OutputFolder:

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 import operator
+from _thread import RLock  # a process that has loaded no threading is ended at once
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from threading import RLock
 from types import MappingProxyType
 from typing import Any, NoReturn
 

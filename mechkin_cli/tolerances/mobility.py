@@ -50,6 +50,34 @@ MOBILITY_STUCK: Final = 8
 MOBILITY_STARTS: Final = 40
 """Random poses tried where the drawing itself leads to no assembly."""
 
+MOBILITY_LONG_ROW: Final = 16
+"""Loops that share joints from which on steps eliminate them one after the other: all at once is
+faster below."""
+
+MOBILITY_LONGER_ROW: Final = 64
+"""The same for ranks, which take some ten times the elimination of a step."""
+
+MOBILITY_FRONT: Final = 12
+"""Freedoms that are eliminated together: a step of so many takes twice the time of its calls."""
+
+MOBILITY_FEW_MOTIONS: Final = 4
+"""Motions are found by inverse iteration where all freedoms are at least so many times as many,
+with those beside: of more a dense factorisation takes less."""
+
+MOBILITY_VALUES_BESIDE: Final = 4
+"""Singular values that are looked at beside those of the motions: the least of them is known better
+than the others."""
+
+MOBILITY_INVERSE_ITERATIONS: Final = 4
+"""Each divides what is wrong in the motions by the square of a singular value in parts of
+`MOBILITY_DAMPING`: two reach rounding where the rank is clear, and the next values, which are
+nearer to one another, are known to a part of themselves after two more."""
+
+MOBILITY_SURELY_REGULAR: Final = 2.0
+"""Times the limit of a rank that the least singular value of independent equations must be as
+inverse iteration finds it, from above: hundreds of values alike leave it off by a tenth. Nearer
+ones are left to the dense factorisation."""
+
 # --- motions -------------------------------------------------------------------------------------
 
 MOBILITY_NO_TWIST: Final = 1e-9

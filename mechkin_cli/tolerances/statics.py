@@ -186,6 +186,14 @@ REST_NODES: Final = 16
 """Rows of a stretch that are corrected with a stiffness of their own, at most; those between follow
 by interpolation."""
 
+MOST_REST_SPANS: Final = 8
+"""Predictions of a stretch, one from the other, before its rows between the nodes follow: where one
+of these is not on the branch, those behind it were in vain."""
+
+REST_CHORD: Final = 1e-9
+"""A correction below this, rad or length units, with a stiffness interpolated to a hundredth leaves
+less than `EQUILIBRIUM_STEP`."""
+
 MOST_CHORDS: Final = 12
 """Corrections of predicted equilibria: three or four are enough."""
 

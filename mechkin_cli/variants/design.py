@@ -12,10 +12,10 @@ which it is computed.
 from __future__ import annotations
 
 import warnings
+from _thread import RLock  # as the recorder
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property, partial
-from threading import RLock
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np

@@ -102,7 +102,10 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("module", "needed_by"),
     [
+        ("analysis.stream", "runs in blocks"),
+        ("response.result", "responses"),
         ("response.runs", "responses"),
+        ("statics.rest", "coordinates at rest"),
         ("balances.runs", "balances"),
         ("mobility.families", "drawings that are singular as driven"),
         ("mobility.configurations", "mobility"),
@@ -120,6 +123,12 @@ def test_a_sweep_leaves_out_what_its_file_does_not_ask_for(
 ) -> None:
     assert f"mechkin_cli.{module}" not in modules_of(COMMAND, str(written)), needed_by
     assert find_spec(f"mechkin_cli.{module}") is not None  # the name is that of a module
+
+
+@pytest.mark.parametrize("library", ["threading", "csv"])
+def test_a_command_does_without(library: str, written: Path) -> None:
+    """Without threads the process is ended at once, and its memory is not taken apart."""
+    assert library not in modules_of(COMMAND, str(written))
 
 
 def test_what_writes_tables_is_seen_by_this_test(written: Path) -> None:

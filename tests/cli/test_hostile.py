@@ -6,6 +6,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -240,5 +241,24 @@ def test_too_little_memory_is_one_sentence(folder: Path) -> None:
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
     command = [*MECHKIN, "analyze", "sweep.yaml", "--quiet"]
     found = run(folder, command, preexec_fn=limited, env=environment)
+    one_sentence(found, 2, "the memory is used up; take fewer rows, columns or tables")
+    assert names(folder) == ["crank.yaml", "long.yaml", "sweep.yaml"]
+
+
+NO_THREADS = """
+import sys, threading
+def start(thread):
+    raise RuntimeError("can't start new thread")
+threading.Thread.start = start
+from mechkin_cli.cli.run import run
+sys.argv[1:] = ["analyze", "sweep.yaml", "--format", "csv", "--quiet"]
+sys.exit(run())
+"""
+
+
+def test_no_memory_for_a_thread_is_the_same_sentence(folder: Path) -> None:
+    sweep = files.CRANK.replace("to: 90, step: 45", "to: 90, count: 100000")
+    (folder / "sweep.yaml").write_text(sweep, encoding="utf-8")
+    found = run(folder, [sys.executable, "-P", "-c", NO_THREADS])
     one_sentence(found, 2, "the memory is used up; take fewer rows, columns or tables")
     assert names(folder) == ["crank.yaml", "long.yaml", "sweep.yaml"]

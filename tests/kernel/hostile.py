@@ -338,7 +338,28 @@ class Hostile:
         chosen = {name: named.get(name) for name in ("inputs", "states", "residual", "flags")}
         tests = (1e-12,) if not self.bad() else self.random.choice(WRONG)
         self.attempt(plan.search, block=block, **chosen, iterations=self.index(0, 9), tests=tests)
+        self.balance(plan, named, rows)
         self.follow(plan)
+
+    def balance(self, plan: Any, named: dict[str, Any], rows: int) -> None:
+        """Places at which loads balance."""
+        count = self.random.randint(0, 3)
+        free = [(self.index(0, 3), self.index(0, 6), self.number()) for _ in range(count)]
+        chosen = {
+            name: named.get(name)
+            for name in ("inputs", "states", "outputs", "lanes", "threads", "iterations")
+        }
+        chosen["free"] = self.random.choice(WRONG) if self.bad() else free
+        chosen["cyclic"] = [self.index(0, 3)]
+        chosen["stiffness"] = self.array(count * count, rows)
+        chosen["turned"] = self.array(turn_count(plan), rows)
+        chosen["time"] = self.per_row(rows)
+        chosen["constraint_rates"] = self.array(plan.input_constraints, rows)
+        chosen["given"], chosen["known"] = self.index(0, 2), self.index(0, 2)
+        chosen["limits"] = (1e-4, 0.5, 1e-9, 1e-11) if not self.bad() else self.random.choice(WRONG)
+        chosen["steps"] = self.index(1, 5)
+        tests = (1e-12, 1e-8, 1e-10) if not self.bad() else self.random.choice(WRONG)
+        self.attempt(plan.balance, **chosen, tests=tests)
 
     def follow(self, plan: Any) -> None:
         """Rows on a path, and single steps."""

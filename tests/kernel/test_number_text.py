@@ -98,6 +98,18 @@ def test_shortest_at_all_powers_and_beside_them():
     assert wrong == []
 
 
+@pytest.mark.parametrize("step", [4, 8, 16])
+def test_ends_at_a_multiple_of_ten_belong_to_even_numbers(step):
+    """Halfway to the next double stands a number with a digit less, which reads back as the even
+    one of the two: no digit of a product that is cut off decides that."""
+    first = 2**52 * step
+    doubles, half = range(first, first + 2000 * step, step), step // 2
+    values = [v for v in doubles if (v + half) % 10 == 0 or (v - half) % 10 == 0]
+    assert len(values) > 100
+    found = [number_text(float(v)) for v in values]
+    assert found == [plain_or_exponent(Decimal(repr(float(v)))) for v in values]
+
+
 @pytest.mark.parametrize("digits", [1, 6, 12, 15])
 def test_significant_digits_round_the_exact_value(digits):
     context = Context(prec=digits, rounding=ROUND_HALF_EVEN)

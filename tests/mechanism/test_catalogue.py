@@ -25,7 +25,7 @@ def problems(path: Path) -> list[Problem]:
 def test_each_quantity_alone_is_what_it_is_among_all(path: Path) -> None:
     for problem in problems(path):
         every = dict(problem.quantities())
-        one_by_one = Catalogue(problem._quantities_of)
+        one_by_one = Catalogue(problem._quantities_of, problem._coordinates_of)
         assert [one_by_one[name] for name in every] == list(every.values())
         assert one_by_one.made == {name.partition(".")[0] for name in every}
         assert list(one_by_one) == list(every)

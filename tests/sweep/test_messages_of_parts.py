@@ -8,6 +8,7 @@ import random
 
 import numpy as np
 import pytest
+from references import FILE_OF
 from sweep.cut import cut
 from sweep.turning_back import FOUR_BAR, SLIDER_CRANK
 
@@ -146,3 +147,15 @@ def test_other_messages_of_many_parts_are_few() -> None:
         notes.add([told, mk.Diagnostic("no-rate", "note", "the same")])
     found = [one.message for one in notes.found()]
     assert found == ["row 0", "the same", "row 1", "row 2", "row 3 (and 5 more such messages)"]
+
+
+def test_messages_of_one_kind_about_many_places_are_told_by_a_stream_too() -> None:
+    """Six legs that spin freely have a note each."""
+    model = mk.load(FILE_OF["stewart"])
+    spinning = [name for name in model.quantities if name.startswith("tube")]
+    whole = [str(one) for one in model.analyze(spinning, tables=[]).diagnostics]
+    stream = model.stream(spinning)
+    for _ in stream:
+        pass
+    assert [str(one) for one in stream.diagnostics] == whole
+    assert sum("spin" in one for one in whole) == 6

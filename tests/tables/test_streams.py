@@ -6,6 +6,8 @@ import gzip
 import io
 import json
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -84,6 +86,24 @@ def test_a_table_without_rows_has_its_columns(name: str) -> None:
     pytest.importorskip("pyarrow")
     empty = Columns("t", "", tuple(column.part([]) for column in LARGE.columns))
     assert written(empty, name) == written(empty, name, 7)  # one block without rows, and no block
+
+
+def test_pandas_is_not_loaded_for_frames(tmp_path: Path) -> None:
+    """It takes 45 MB, half of what a long run may hold beside its rows."""
+    pytest.importorskip("pyarrow")
+    pytest.importorskip("pandas")
+    code = (
+        "import sys; from mechkin_cli.__main__ import main\n"
+        "sys.argv = ['mechkin', *sys.argv[1:]]\n"
+        "try: main()\n"
+        "except SystemExit as ended: print(ended.code, 'pandas' in sys.modules)"
+    )
+    words = ["analyze", str(FILE_OF["rcsr"]), "--format", "parquet,arrow", "--quiet"]
+    command = [sys.executable, "-P", "-c", code, *words, "--out", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.split()[-1] == "False"
+    assert (tmp_path / "rows.parquet").exists()
+    assert (tmp_path / "rows.arrow").exists()
 
 
 @pytest.mark.parametrize("name", ["parquet", "arrow"])

@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "arguments.hpp"
+#include "balance_binding.hpp"
 #include "bindings.hpp"
 #include "plan/output_list.hpp"
 #include "plan/plan_builder.hpp"
@@ -230,6 +231,7 @@ void bind_plan(nb::module_& m) {
       .def("assembly_size", &measured_size, "arguments"_a)
       .def("run", &run_plan, "arguments"_a)
       .def("run_precise", &run_precise, "arguments"_a)
+      .def("balance", &balance_places, "arguments"_a)
       .def("search", &search, "arguments"_a);
   bind_outputs(m);
   m.def("available_processors", &available_processors);

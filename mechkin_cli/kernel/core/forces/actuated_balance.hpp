@@ -88,32 +88,37 @@ inline void apply_actuated_friction(Balance& balance, bool accelerating, int shi
                                 [&](int a) { return actuator_rate(p, w, a); });
 }
 
-// `row_value` gives angles with their whole turns, `rate_by_leader` rates of inputs by those that they follow.
+// `row_value` gives angles with their whole turns, `rate_by_leader` rates of inputs by those that they follow. Friction is
+// solved for where actuators share its effort; else the packs that go together solve it together, and finish_balance follows.
 template <class RowValue, class RateByLeader>
-inline Balance balance_with_actuators(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
-                                      const RowValue& row_value, const RateByLeader& rate_by_leader) {
+inline void begin_balance(Balance& balance, bool accelerating, int shift, const RowValue& row_value,
+                          const RateByLeader& rate_by_leader) {
+  const Plan& p = balance.p;
+  Workspace& w = balance.w;
   if (!p.actuators) {
-    const Balance balance = balance_forces(p, w, moving, accelerating, shift, row_value);
-    find_motors(p, w, rate_by_leader);
-    return balance;
+    balance_loads(balance, accelerating, shift, row_value);
+    if (!p.frictions) find_motors(p, w, rate_by_leader);
+    return;
   }
-  if (!p.frictions) {
-    // the actuators' efforts will leave nothing to the inputs that they answer for but rounding
-    balance_forces(p, w, moving, accelerating, 0, row_value);
-    find_motors(p, w, rate_by_leader);
-    want_efforts(p, w.actuation, 0);
-    *w.actuation.least = solve_actuators(p, w.actuation, 1, w.actuation.motor);
-  }
-  Balance balance = {p, w, zero_wrench(), zero_wrench(), moving, Pack(0.0)};
-  apply_loads(balance, accelerating, row_value);
   if (p.frictions) {
-    apply_actuated_friction(balance, accelerating, shift, rate_by_leader);
-  } else {
-    for (int a = 0; a < p.actuators; ++a)
-      apply_along_coordinate(balance, p.actuator[a].axis, w.actuation.motor[a]);
-    distribute(p, w, shift);
+    apply_loads(balance, accelerating, row_value);
+    return apply_actuated_friction(balance, accelerating, shift, rate_by_leader);
   }
-  return balance;
+  // the actuators' efforts will leave nothing to the inputs that they answer for but rounding
+  Balance by_inputs = balance;
+  balance_loads(by_inputs, accelerating, 0, row_value);
+  find_motors(p, w, rate_by_leader);
+  want_efforts(p, w.actuation, 0);
+  *w.actuation.least = solve_actuators(p, w.actuation, 1, w.actuation.motor);
+  apply_loads(balance, accelerating, row_value);
+  for (int a = 0; a < p.actuators; ++a) apply_along_coordinate(balance, p.actuator[a].axis, w.actuation.motor[a]);
+  distribute(p, w, shift);
+}
+MECHKIN_INLINE bool solves_friction_together(const Plan& p) { return p.frictions && !p.actuators; }
+template <class RateByLeader>
+inline void finish_balance(Balance& balance, int shift, const RateByLeader& rate_by_leader) {
+  apply_friction(balance, shift);
+  find_motors(balance.p, balance.w, rate_by_leader);
 }
 
 }  // namespace

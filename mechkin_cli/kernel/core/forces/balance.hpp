@@ -1,4 +1,4 @@
-// The balance of forces of a pack of rows: everything applied, friction solved for, reactions and efforts found.
+// The balance of forces of a pack of rows: everything applied, reactions and efforts found.
 #pragma once
 
 #include "forces/friction.hpp"
@@ -14,16 +14,14 @@ inline void apply_loads(Balance& balance, bool accelerating, const RowValue& row
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_value);
 }
 
+// The balance without friction, of which what is solved for then is prepared.
 template <class RowValue>
-inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
-                              const RowValue& row_value) {
-  Balance balance = {p, w, zero_wrench(), zero_wrench(), moving, Pack(0.0)};
+inline void balance_loads(Balance& balance, bool accelerating, int shift, const RowValue& row_value) {
   apply_loads(balance, accelerating, row_value);
-  if (p.frictions)
-    apply_friction(balance, accelerating, shift);
+  if (balance.p.frictions)
+    prepare_friction(balance, accelerating, shift);
   else
-    distribute(p, w, shift);
-  return balance;
+    distribute(balance.p, balance.w, shift);
 }
 
 }  // namespace

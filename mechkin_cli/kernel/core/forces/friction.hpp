@@ -70,6 +70,7 @@ inline void place_contacts(const Plan& p, const Workspace& w) {
     const JointPlace& j = p.place[f.place];
     r.axis[k] = f.course < 0 ? carried_vector(w, f.link, f.axis) : course_axis(p, w, f.course);
     r.point[k] = carried_point(w, j.point_on, j.point);
+    for (int d = j.drive_begin; d < j.drive_end; ++d) r.effort_along[d] = along_coordinate(p, w, p.drive[d].axis, Pack(1.0));
     for (int c = f.contact_begin; c < f.contact_end; ++c)
       if (p.contact[c].code == CONTACT_ALONG)
         r.direction[c] = f.course < 0 ? carried_vector(w, f.link, p.contact[c].direction) : r.axis[k];
@@ -115,7 +116,10 @@ inline void read_contacts(const Plan& p, const Workspace& w, Vec3* out, int stri
   const Rubbing& r = w.rubbing;
   for (int k = 0; k < p.frictions; ++k) {
     const Friction& f = p.friction[k];
-    const Wrench by = joint_wrench(p, w, p.place[f.place]);
+    const JointPlace& j = p.place[f.place];
+    Wrench by = transmitted_wrench(w, j);
+    for (int d = j.drive_begin; d < j.drive_end; ++d)
+      by -= (Pack(p.drive[d].scale) * w.effort[p.drive[d].input]) * r.effort_along[d];
     if (f.contact_end == f.contact_begin + 1 && p.contact[f.contact_begin].code == CONTACT_TOTAL) {
       out[f.contact_begin * stride] = Pack(p.contact[f.contact_begin].share) * by.force;
       continue;
@@ -265,23 +269,25 @@ inline void aim_frictions(const Plan& p, Workspace& w, bool accelerating, Pack r
   }
 }
 
-// Friction onto the links, and what all joints transmit; every other load has been applied.
-inline void apply_friction(Balance& balance, bool accelerating, int shift) {
+// What friction is solved from; every other load has been applied.
+inline void prepare_friction(Balance& balance, bool accelerating, int shift) {
+  balance.w.rubbing.rates = twist_level(balance.p, balance.w);
+  aim_frictions(balance.p, balance.w, accelerating, balance.w.rubbing.rates);
+  apply_told(balance);
+  find_gains(balance, shift);
+}
+// Friction that is solved onto the links, and what all joints transmit.
+inline void apply_friction(Balance& balance, int shift) {
   const Plan& p = balance.p;
   Workspace& w = balance.w;
   Rubbing& r = w.rubbing;
-  const Pack rates = twist_level(p, w);
-  aim_frictions(p, w, accelerating, rates);
-  apply_told(balance);
-  find_gains(balance, shift);
-  solve_friction(p, r);
   mark_open(p, r);
   judge_friction(p, r, balance.level);
   for (int k = 0; k < p.links; ++k) w.carried[k] = r.applied[k];
   for (int k = 0; k < p.frictions; ++k) rub(balance, k, r.force[k]);
   add_told(p, r);
   distribute(p, w, shift);
-  r.self_locking = self_locking(r, p.inputs, w.effort, Pack(NOTHING_WORKS) * balance.level * rates,
+  r.self_locking = self_locking(r, p.inputs, w.effort, Pack(NOTHING_WORKS) * balance.level * r.rates,
                                 [&](int i) { return w.rate[p.input_column[i]]; });
 }
 

@@ -16,6 +16,7 @@ struct Rubbing {
   Mask* swap;
   Vec3 *axis, *point;  // frictions: now
   Vec3* direction;     // contacts: now
+  Wrench* effort_along;  // drives: by a unit of effort along the coordinate, of joints that rub
   Vec3 *base, *gain;   // contacts: their loads without friction; by a unit of each friction
   Vec3* load;          // contacts: their loads with the friction forces
   Pack* size;          // contacts: magnitudes of these
@@ -25,6 +26,7 @@ struct Rubbing {
   bool is_told;
   Pack* share;         // frictions: six vectors of rest_share.hpp
   Pack level;          // the largest reaction without friction
+  Pack rates;          // the mechanism's largest
   Pack softness;       // of magnitudes of loads, zero but on the way to a start (friction_solver.hpp)
   Pack self_locking;
 };
@@ -36,6 +38,7 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   const long n = p.frictions, pack = sizeof(Pack);
   r->applied = (Wrench*)take(p.links * sizeof(Wrench));
   r->drag = (Wrench*)take(n * sizeof(Wrench));
+  r->effort_along = (Wrench*)take(p.drives * sizeof(Wrench));
   Pack** const vectors[] = {&r->speed, &r->coefficient, &r->force, &r->normal, &r->state,
                             &r->at_rest, &r->step, &r->weight, &r->per_weight, &r->origin, &r->newton};
   for (Pack** each : vectors) *each = (Pack*)take(n * pack);

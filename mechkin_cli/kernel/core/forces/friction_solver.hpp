@@ -55,6 +55,19 @@ MECHKIN_INLINE void bound_friction(const Plan& p, const Rubbing& r, Size&& size)
     }
 }
 
+// Not below the sum of row k of L.
+template <int N>
+MECHKIN_INLINE Pack coarse_bound(const Plan& p, const Rubbing& r, int k) {
+  const int n = N ? N : p.frictions;
+  Pack bound = 0.0;
+  for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+    Pack sum = 0.0;
+    for (int j = 0; j < n; ++j) sum += sum_of_components(r.gain[c * n + j]);
+    bound += Pack(p.contact[c].weight) * sum;
+  }
+  return r.coefficient[k] * bound;
+}
+
 // Friction k where L w < w.
 MECHKIN_INLINE Mask contracts(const Rubbing& r, int n, int k, const Pack* weight) {
   Pack sum = 0.0;
@@ -109,9 +122,12 @@ template <int N>
 inline void prove_unique(const Plan& p, const Rubbing& r) {
   const int n = N ? N : p.frictions;
   for (int k = 0; k < n; ++k) r.weight[k] = 1.0;
-  // by a bound without roots first, which mostly does
-  bound_friction<N>(p, r, [](const Vec3& a) { return above_magnitude(a); });
+  // by a bound without roots first, and where contacts carry so little of friction that a coarse one mostly does
   Mask plainly = all_lanes(true), weighed = all_lanes(true);
+  for (int k = 0; k < n; ++k) plainly = plainly & (coarse_bound<N>(p, r, k) <= Pack(1.0 - CONTRACTION_MARGIN));
+  if (all(plainly)) return;
+  bound_friction<N>(p, r, [](const Vec3& a) { return above_magnitude(a); });
+  plainly = all_lanes(true);
   for (int k = 0; k < n; ++k) plainly = plainly & contracts(r, n, k, r.weight);
   if (all(plainly)) return;
   weigh(p, r);
@@ -123,33 +139,33 @@ inline void prove_unique(const Plan& p, const Rubbing& r) {
   prove_thoroughly(p, r, proven);
 }
 
-// What a contact carries with the friction forces in r.force.
-template <int N>
-MECHKIN_INLINE Vec3 contact_load(const Plan& p, const Rubbing& r, int c) {
-  const int n = N ? N : p.frictions;
-  const Vec3* const gain = r.gain + c * n;
-  Vec3 load = r.base[c];
-  if (has_one_component(p.contact[c]))
-    for (int j = 0; j < n; ++j) load.x += r.force[j] * gain[j].x;
-  else
-    for (int j = 0; j < n; ++j) load += r.force[j] * gain[j];
-  return load;
-}
-
 // Normal loads of the friction forces in r.force, with the contacts' loads and their magnitudes, and mu N - z into r.right.
 template <int N, bool SOFT>
 inline void load_contacts(const Plan& p, const Rubbing& r) {
   const int n = N ? N : p.frictions;
+  Pack own[N ? N : 1];
+  for (int k = 0; N && k < n; ++k) own[k] = r.force[k];
+  const Pack* const force = N ? own : r.force;
   for (int k = 0; k < n; ++k) {
     Pack normal = 0.0;
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
-      const Vec3 load = contact_load<N>(p, r, c);
-      Pack size;
-      if constexpr (SOFT)
-        size = sqrt(dot(load, load) + r.softness * r.softness);
-      else
-        size = has_one_component(p.contact[c]) ? abs(load.x) : magnitude(load);
-      r.load[c] = load, r.size[c] = size;
+      const Vec3* const gain = r.gain + c * n;
+      Pack x = r.base[c].x, size;
+      for (int j = 0; j < n; ++j) x += force[j] * gain[j].x;
+      r.load[c].x = x;
+      if (!SOFT && has_one_component(p.contact[c])) {
+        size = abs(x);
+      } else {
+        Pack y = r.base[c].y, z = r.base[c].z;
+        for (int j = 0; j < n; ++j) y += force[j] * gain[j].y, z += force[j] * gain[j].z;
+        r.load[c].y = y, r.load[c].z = z;
+        const Vec3 load = {x, y, z};
+        if constexpr (SOFT)
+          size = sqrt(dot(load, load) + r.softness * r.softness);
+        else
+          size = magnitude(load);
+      }
+      r.size[c] = size;
       normal += Pack(p.contact[c].weight) * size;
     }
     r.normal[k] = normal;
@@ -157,36 +173,32 @@ inline void load_contacts(const Plan& p, const Rubbing& r) {
   }
 }
 
-// Newton's matrix I - mu dN/dz there.
+// Row k of Newton's matrix I - mu dN/dz there.
 template <int N>
-inline void differentiate_loads(const Plan& p, const Rubbing& r) {
+MECHKIN_INLINE void differentiate_load(const Plan& p, const Rubbing& r, int k, Pack* row) {
   const int n = N ? N : p.frictions;
-  for (int k = 0; k < n; ++k) {
-    Pack* const row = r.matrix + k * n;
-    for (int j = 0; j < n; ++j) row[j] = k == j ? 1.0 : 0.0;
-    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
-      const Mask none = r.size[c] == Pack(0.0);
-      const Vec3 along = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), r.size[c])) * r.load[c];
-      const Pack share = r.coefficient[k] * Pack(p.contact[c].weight);
-      const Vec3* const gain = r.gain + c * n;
-      if (has_one_component(p.contact[c]))
-        for (int j = 0; j < n; ++j) row[j] -= share * (along.x * gain[j].x);
-      else
-        for (int j = 0; j < n; ++j) row[j] -= share * dot(along, gain[j]);
+  for (int j = 0; j < n; ++j) row[j] = k == j ? 1.0 : 0.0;
+  for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+    const Mask none = r.size[c] == Pack(0.0);
+    const Pack inverse = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), r.size[c]));
+    const Pack share = r.coefficient[k] * Pack(p.contact[c].weight);
+    const Vec3* const gain = r.gain + c * n;
+    if (has_one_component(p.contact[c])) {
+      const Pack along = inverse * r.load[c].x;
+      for (int j = 0; j < n; ++j) row[j] -= share * (along * gain[j].x);
+    } else {
+      const Vec3 along = inverse * r.load[c];
+      for (int j = 0; j < n; ++j) row[j] -= share * dot(along, gain[j]);
     }
   }
 }
+inline void differentiate_loads(const Plan& p, const Rubbing& r) {
+  for (int k = 0; k < p.frictions; ++k) differentiate_load<0>(p, r, k, r.matrix + k * p.frictions);
+}
 
-// r.right := r.matrix^-1 r.right. Where friction contracts the matrix is diagonally dominant, columns in parts of w, and
-// needs no exchange of rows (Varga, On recurring theorems on diagonal dominance, 1976).
-template <int N>
-inline void eliminate(const Rubbing& r, int runtime) {
-  const int n = N ? N : runtime;
-  // known to be apart, where their size is known
-  Pack own_matrix[N ? N * N : 1], own_right[N ? N : 1];
-  Pack *const a = N ? own_matrix : r.matrix, *const b = N ? own_right : r.right;
-  for (int e = 0; N && e < n * n; ++e) a[e] = r.matrix[e];
-  for (int k = 0; N && k < n; ++k) b[k] = r.right[k];
+// b := a^-1 b. Where friction contracts the matrix is diagonally dominant, columns in parts of w, and needs no exchange of
+// rows (Varga, On recurring theorems on diagonal dominance, 1976).
+MECHKIN_INLINE void eliminate(Pack* a, Pack* b, int n) {
   for (int k = 0; k < n; ++k) {
     const Pack inverse = Pack(1.0) / a[k * n + k];
     a[k * n + k] = inverse;
@@ -200,7 +212,22 @@ inline void eliminate(const Rubbing& r, int runtime) {
     for (int j = k + 1; j < n; ++j) b[k] -= a[k * n + j] * b[j];
     b[k] *= a[k * n + k];
   }
-  for (int k = 0; N && k < n; ++k) r.right[k] = b[k];
+}
+
+// r.right := Newton's step.
+template <int N>
+inline void find_step(const Plan& p, const Rubbing& r) {
+  if constexpr (N == 0) {
+    differentiate_loads(p, r);
+    eliminate(r.matrix, r.right, p.frictions);
+  } else {
+    // known to be apart
+    Pack a[N * N], b[N];
+    for (int k = 0; k < N; ++k) differentiate_load<N>(p, r, k, a + k * N);
+    for (int k = 0; k < N; ++k) b[k] = r.right[k];
+    eliminate(a, b, N);
+    for (int k = 0; k < N; ++k) r.right[k] = b[k];
+  }
 }
 
 // What is left of the equations, and the largest friction force, in the norm in which friction contracts.
@@ -219,22 +246,27 @@ inline LeftOver left_over(const Plan& p, const Rubbing& r) {
   return found;
 }
 
-// Newton's method from r.force on for lanes that are not `done`; loads and residuals of all are those of r.force after it.
-template <int N>
-inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
-  const int n = N ? N : p.frictions;
+// A pack's friction on its way through Newton's method, from r.force on, for lanes that are not `done`.
+struct FrictionSearch {
+  Rubbing& r;
+  Mask done;
+  bool over = false;
   // each lane tries a length of Newton's step from `origin`; that of zero stands for z := mu N(z)
-  Mask moved = all_lanes(false);
+  Mask moved = all_lanes(false), solved = all_lanes(false);
   Pack before = __builtin_inf(), length = 0.0;
-  const Pack infinite = __builtin_inf();
-  for (int iteration = 0; iteration < FRICTION_ITERATIONS; ++iteration) {
+
+  // Whether lanes go on by Newton's step.
+  template <int N>
+  Mask try_forces(const Plan& p) {
+    const int n = N ? N : p.frictions;
     load_contacts<N, false>(p, r);
     const LeftOver now = left_over<N>(p, r);
     const Mask back = ~done & (length > Pack(0.0)) & ~(now.left <= (Pack(1.0) - Pack(0.1) * length) * before);
     done = done | (~back & (now.left <= Pack(FRICTION_TIGHT) * now.scale));
     done = done | (back & (before <= Pack(FRICTION_STALLED) * now.scale));
-    done = done | ~(now.left < infinite);  // nothing to hope for
+    done = done | ~(now.left < Pack(__builtin_inf()));  // nothing to hope for
     moved = back;
+    solved = ~back & (now.left <= Pack(FRICTION_ACCEPT) * now.scale);
     const Mask shorter = back & (length > Pack(FRICTION_SHORTEST)) & ~done;
     const Mask plain = back & ~shorter;
     length = select(shorter, Pack(0.5) * length, Pack(1.0));
@@ -245,23 +277,45 @@ inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
       }
       length = select(plain, Pack(0.0), length);
     }
-    if (all(done)) break;
+    over = all(done);
     const Mask go = ~back & ~done;
     before = select(go, now.left, before);
-    if (!any(go)) continue;
+    return go;
+  }
+  template <int N>
+  void step(const Plan& p, Mask go) {
+    const int n = N ? N : p.frictions;
+    if (!any(go)) return;
     for (int k = 0; k < n; ++k) {
       r.origin[k] = select(go, r.force[k], r.origin[k]);
       r.step[k] = select(go, r.force[k] + r.right[k], r.step[k]);
     }
-    differentiate_loads<N>(p, r);
-    eliminate<N>(r, n);
+    find_step<N>(p, r);
     for (int k = 0; k < n; ++k) {
       r.newton[k] = select(go, r.right[k], r.newton[k]);
       r.force[k] = select(go, r.force[k] + r.right[k], r.force[k]);
     }
   }
+};
+
+// Newton's method on the packs that go together, each through every stage of a step: they wait for results, and need not
+// wait for each other's. Loads and residuals of all lanes are those of r.force after it.
+template <int N>
+inline void iterate_friction(const Plan& p, FrictionSearch* pack, int count) {
+  Mask go[2];
+  bool over = false;
+  for (int iteration = 0; iteration < FRICTION_ITERATIONS && !over; ++iteration) {
+    over = true;
+    for (int k = 0; k < count; ++k) {
+      if (!pack[k].over) go[k] = pack[k].template try_forces<N>(p);
+      over = over && pack[k].over;
+    }
+    for (int k = 0; k < count; ++k)
+      if (!pack[k].over) pack[k].template step<N>(p, go[k]);
+  }
   // where the forces were moved after their loads had been found, or were not found in time
-  if (any(moved) || !all(done)) load_contacts<N, false>(p, r);
+  for (int k = 0; k < count; ++k)
+    if (any(pack[k].moved) || !pack[k].over) load_contacts<N, false>(p, pack[k].r);
 }
 
 // A start next to the solution for lanes that are not `done`: magnitudes sqrt(|load|^2 + softness^2) have no kinks and the
@@ -277,8 +331,7 @@ MECHKIN_RARE void start_softly(const Plan& p, Rubbing& r, Mask done) {
   r.softness = Pack(FRICTION_SOFTEST) * size;
   for (int level = 0; level < FRICTION_LEVELS; ++level) {
     load_contacts<0, true>(p, r);
-    differentiate_loads<0>(p, r);
-    eliminate<0>(r, n);
+    find_step<0>(p, r);
     for (int k = 0; k < n; ++k) r.force[k] += r.right[k];
     if (level & 1) r.softness *= Pack(0.5);
   }
@@ -286,44 +339,62 @@ MECHKIN_RARE void start_softly(const Plan& p, Rubbing& r, Mask done) {
   for (int k = 0; k < n; ++k) r.force[k] = select(done, r.origin[k], r.force[k]);
 }
 
-// Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
-// coefficients, base and gain; r.state is FRICTION_DECIDED.
+// Starts from the loads without friction.
 template <int N>
-inline void solve_sized_friction(const Plan& p, Rubbing& r) {
+inline void start_friction(const Plan& p, Rubbing& r) {
   const int n = N ? N : p.frictions;
   prove_unique<N>(p, r);
-  for (int k = 0; k < n; ++k) r.per_weight[k] = Pack(1.0) / r.weight[k];
-  // by the reactions without friction
   for (int k = 0; k < n; ++k) {
+    r.per_weight[k] = Pack(1.0) / r.weight[k];
     Pack normal = 0.0;
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
-      normal += Pack(p.contact[c].weight) * magnitude(r.base[c]);
+      normal += Pack(p.contact[c].weight) * (has_one_component(p.contact[c]) ? abs(r.base[c].x) : magnitude(r.base[c]));
     r.force[k] = r.coefficient[k] * normal;
   }
   r.softness = 0.0;
-  iterate_friction<N>(p, r, all_lanes(false));
+}
+// What Newton's method has not found is sought once more from another start.
+template <int N>
+inline void judge_solution(const Plan& p, const FrictionSearch& found) {
+  if (all(found.solved)) return;
+  Rubbing& r = found.r;
   LeftOver last = left_over<N>(p, r);
   Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   if (all(solved)) return;
   start_softly(p, r, solved);
-  iterate_friction<0>(p, r, solved);
+  FrictionSearch again = {r, solved};
+  iterate_friction<0>(p, &again, 1);
   last = left_over<N>(p, r);
   solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
-  for (int k = 0; k < n; ++k) {
+  for (int k = 0; k < p.frictions; ++k) {
     const Mask open = ~solved & (r.state[k] == Pack((double)FRICTION_DECIDED));
     r.state[k] = select(open, Pack((double)FRICTION_NOT_SOLVED), r.state[k]);
   }
 }
-inline void solve_friction(const Plan& p, Rubbing& r) {
+
+// Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
+// coefficients, base and gain; r.state is FRICTION_DECIDED. Of one pack or of two that go together.
+template <int N>
+inline void solve_sized_friction(const Plan& p, Rubbing* const* r, int count) {
+  for (int k = 0; k < count; ++k) start_friction<N>(p, *r[k]);
+  FrictionSearch pack[] = {{*r[0], all_lanes(false)}, {*r[count - 1], all_lanes(false)}};
+  iterate_friction<N>(p, pack, count);
+  for (int k = 0; k < count; ++k) judge_solution<N>(p, pack[k]);
+}
+inline void solve_frictions(const Plan& p, Rubbing* const* r, int count) {
   if constexpr (SIZED_BLOCKS) {
     switch (p.frictions) {
-      case 1: return solve_sized_friction<1>(p, r);
-      case 2: return solve_sized_friction<2>(p, r);
-      case 3: return solve_sized_friction<3>(p, r);
-      case 4: return solve_sized_friction<4>(p, r);
+      case 1: return solve_sized_friction<1>(p, r, count);
+      case 2: return solve_sized_friction<2>(p, r, count);
+      case 3: return solve_sized_friction<3>(p, r, count);
+      case 4: return solve_sized_friction<4>(p, r, count);
     }
   }
-  solve_sized_friction<0>(p, r);
+  solve_sized_friction<0>(p, r, count);
+}
+inline void solve_friction(const Plan& p, Rubbing& r) {
+  Rubbing* const one = &r;
+  solve_frictions(p, &one, 1);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ inline void newton_share(const Plan& p, Rubbing& r, const Pack* largest, const P
     r.coefficient[k] = p.friction[k].pushes ? largest[k] : share * largest[k];
   }
   load_contacts<0, false>(p, r);
-  differentiate_loads<0>(p, r);
+  differentiate_loads(p, r);
   Pack rest = power;
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) r.border[k * m + j] = r.matrix[k * n + j];

@@ -312,9 +312,13 @@ inline void input_efforts(const Plan& p, Workspace& w) {
   }
 }
 
-// Constraint wrench that a joint's first link exerts on the second, without drives and joint loads.
+// Wrench that a joint's first link exerts on the second, without joint loads.
+MECHKIN_INLINE Wrench transmitted_wrench(const Workspace& w, const JointPlace& j) {
+  return Pack(j.sign) * (j.reference < 0 ? w.reaction[-1 - j.reference] : w.carried[j.reference]);
+}
+// The same by its constraints, without drives.
 inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& j) {
-  Wrench r = Pack(j.sign) * (j.reference < 0 ? w.reaction[-1 - j.reference] : w.carried[j.reference]);
+  Wrench r = transmitted_wrench(w, j);
   for (int d = j.drive_begin; d < j.drive_end; ++d) {
     const Drive& drive = p.drive[d];
     r -= along_coordinate(p, w, drive.axis, Pack(drive.scale) * w.effort[drive.input]);

@@ -11,12 +11,19 @@
 
 namespace {
 
+// Calls f with 0, 1 ... N - 1 as constants: what is written N times lets a matrix stand in registers.
+template <int... K, class F>
+MECHKIN_INLINE void each_constant(std::integer_sequence<int, K...>, F&& f) {
+  (f(std::integral_constant<int, K>()), ...);
+}
+template <int N, class F>
+MECHKIN_INLINE void each_of(F&& f) {
+  each_constant(std::make_integer_sequence<int, N>(), f);
+}
 // C = U^-1 L^-1 D^-1 for the factors P A = L U, D the equations' weights in the order of the pivots; row i
 // of C over the weight of unknown i. Its singular values are those of the inverse of the weighted matrix.
-template <int N>
-MECHKIN_INLINE void weighted_inverse(const Pack* a, const Mask* swap, int runtime, Pack* inverse_weight,
-                                     const double* column_weight, const int* unknown, Pack* c) {
-  const int n = N ? N : runtime;
+inline void weighted_inverse(const Pack* a, const Mask* swap, int n, Pack* inverse_weight, const double* column_weight,
+                             const int* unknown, Pack* c) {
   int s = 0;
   for (int k = 0; k < n; ++k)
     for (int i = k + 1; i < n; ++i) {
@@ -44,6 +51,46 @@ MECHKIN_INLINE void weighted_inverse(const Pack* a, const Mask* swap, int runtim
     const Pack scale = 1.0 / column_weight[unknown[i]];
     for (int j = 0; j < n; ++j) c[i * n + j] *= scale;
   }
+}
+
+// The same of known size without the division by the unknowns' weights, written out, so that what is yet needed stays in
+// registers.
+template <int N>
+MECHKIN_INLINE void small_inverse(const Pack* a, const Mask* swap, const Pack* inverse_weight, Pack* c) {
+  Pack weight[N];
+  for (int i = 0; i < N; ++i) weight[i] = inverse_weight[i];
+  each_of<N>([&](auto k) __attribute__((always_inline)) {
+    each_of<N - 1 - k()>([&](auto off) __attribute__((always_inline)) {
+      constexpr int i = k() + 1 + off();
+      const Mask swapped = swap[k() * N - k() * (k() + 1) / 2 + off()];
+      const Pack x = weight[k()], y = weight[i];
+      weight[k()] = select(swapped, y, x);
+      weight[i] = select(swapped, x, y);
+    });
+  });
+  each_of<N>([&](auto j) __attribute__((always_inline)) {
+    c[j() * N + j()] = weight[j()];
+    each_of<N - 1 - j()>([&](auto off) __attribute__((always_inline)) {
+      constexpr int i = j() + 1 + off();
+      Pack sum = -(a[i * N + j()] * c[j() * N + j()]);
+      each_of<off()>([&](auto k) __attribute__((always_inline)) {
+        constexpr int at = j() + 1 + k();
+        sum -= a[i * N + at] * c[at * N + j()];
+      });
+      c[i * N + j()] = sum;
+    });
+  });
+  each_of<N>([&](auto from_last) __attribute__((always_inline)) {
+    constexpr int i = N - 1 - from_last();
+    each_of<N>([&](auto j) __attribute__((always_inline)) {
+      Pack sum = i < j() ? Pack(0.0) : c[i * N + j()];
+      each_of<from_last()>([&](auto off) __attribute__((always_inline)) {
+        constexpr int k = i + 1 + off();
+        sum -= a[i * N + k] * c[k * N + j()];
+      });
+      c[i * N + j()] = sum * a[i * N + i];
+    });
+  });
 }
 
 // Packs whose estimates are made together.
@@ -84,15 +131,6 @@ inline Numbers gram(const Numbers* a, int n, Numbers* out) {
   return trace;
 }
 
-// Calls f with 0, 1 ... N - 1 as constants: what is written N times lets a matrix stand in registers.
-template <int... K, class F>
-MECHKIN_INLINE void each_constant(std::integer_sequence<int, K...>, F&& f) {
-  (f(std::integral_constant<int, K>()), ...);
-}
-template <int N, class F>
-MECHKIN_INLINE void each_of(F&& f) {
-  each_constant(std::make_integer_sequence<int, N>(), f);
-}
 // An entry of a symmetric matrix of which the upper half is there.
 template <int N>
 constexpr int upper(int i, int j) { return i < j ? i * N + j : j * N + i; }
@@ -146,22 +184,74 @@ inline Numbers largest_eigenvalue(Numbers* power, Numbers* other, int n) {
   for (int e = 0; e < n * n; ++e) t2 += power[e] * power[e];
   return eigenvalue_of(t1, t2, n, squarings);
 }
-// The same of a small one by its upper half.
+
+// The sum of the squares of a symmetric matrix's entries, the trace of its square, by the upper half.
 template <int N, class Numbers>
-MECHKIN_INLINE Numbers largest_eigenvalue_of_small(Numbers* power) {
-  static_assert(N <= 6);
-  Numbers t1 = {}, t2 = {}, other[N * N];
-  for (int s = 0; s < 2; ++s) {
-    upper_gram<N, true>(power, other);
-    t1 = upper_gram<N, true>(other, power);
+MECHKIN_INLINE Numbers square_sum(const Numbers* a) {
+  Numbers diagonal = {}, above = {};
+  each_of<N>([&](auto i) __attribute__((always_inline)) {
+    each_of<N - i()>([&](auto off) __attribute__((always_inline)) {
+      const Numbers x = a[upper<N>(i(), i() + off())];
+      if constexpr (off() == 0)
+        diagonal += x * x;
+      else
+        above += x * x;
+    });
+  });
+  return diagonal + (above + above);
+}
+
+// The part of the largest eigenvalue's power p up to which those of all others together are passed over: with their sum s in
+// parts of it and q, at most s^2, the sum of their squares, T1^2 / T2 = (1 + s)^2 / (1 + q), and T2 is the largest one's but
+// for q: 1e-4, whose 4 p-th root is lost in a singular value, 6e-6 for p = 4.
+constexpr double PASSED_OVER = 0.01;
+
+// The largest eigenvalue of a small symmetric matrix of trace 1 by its upper half, of packs in the halves: to 2 %, and to
+// 1e-5 where it is found by a lower power since it is far above the others, which spares most packs a squaring or two.
+struct LargestOfSmall {
+  Singles value = {};
+  Mask found[PACKS_OF_ESTIMATE] = {all_lanes(false), all_lanes(false)};
+
+  // Takes what lanes tell by the traces of a power and its square that were not found before; whether that is all of them.
+  MECHKIN_INLINE bool take_far_ones(Singles t1, Singles t2, int squarings) {
+    const Singles square = t1 * t1;
+    Singles now = t2;
+    for (int s = 0; s <= squarings; ++s) now = root(now);
+    Mask everywhere = all_lanes(true);
+    for (int k = 0; k < PACKS_OF_ESTIMATE; ++k) {
+      const Mask far = half_of(square, k) <= Pack(1.0 + 2.0 * PASSED_OVER) * half_of(t2, k);
+      take(k, now, far);
+      everywhere = everywhere & found[k];
+    }
+    return all(everywhere);
   }
+  MECHKIN_INLINE void take(int k, Singles now, Mask these) {
+    const Pack mine = select(these & ~found[k], half_of(now, k), half_of(value, k));
+    put_half(value, k, __builtin_convertvector(mine.v, HalfSingles));
+    found[k] = found[k] | these;
+  }
+};
+template <int N>
+MECHKIN_INLINE Singles largest_eigenvalue_of_small(Singles* power) {
+  static_assert(N <= 6);
+  Singles other[N * N];
+  LargestOfSmall largest;
+  upper_gram<N, true>(power, other);
+  Singles t1 = upper_gram<N, true>(other, power);
+  if (largest.take_far_ones(t1, square_sum<N>(power), 2)) return largest.value;
+  t1 = upper_gram<N, true>(power, other);
+  if (largest.take_far_ones(t1, square_sum<N>(other), 3)) return largest.value;
+  t1 = upper_gram<N, true>(other, power);
+  Singles t2 = {};
   each_of<N>([&](auto i) __attribute__((always_inline)) {
     each_of<N>([&](auto j) __attribute__((always_inline)) {
-      const Numbers x = power[upper<N>(i(), j())];
+      const Singles x = power[upper<N>(i(), j())];
       t2 += x * x;
     });
   });
-  return eigenvalue_of(t1, t2, N, 4);
+  const Singles last = eigenvalue_of(t1, t2, N, 4);
+  for (int k = 0; k < PACKS_OF_ESTIMATE; ++k) largest.take(k, last, all_lanes(true));
+  return largest.value;
 }
 
 // The largest singular value of the inverse of diag(1 / inverse_weight) A diag(column_weight), A as factored.
@@ -178,11 +268,12 @@ MECHKIN_INLINE void estimate_together(InverseNorm* pack, int count, const double
   Singles power[N * N];
   Pack trace[PACKS_OF_ESTIMATE];
   for (int k = 0; k < count; ++k) {
-    // in places of their own: what may be written by any name is read again each time
-    Pack a[N * N], weight[N], c[N * N], g[N * N];
-    for (int e = 0; e < N * N; ++e) a[e] = pack[k].f.a[e];
-    for (int i = 0; i < N; ++i) weight[i] = pack[k].inverse_weight[i];
-    weighted_inverse<N>(a, pack[k].f.swap, N, weight, column_weight, unknown, c);
+    Pack c[N * N], g[N * N];
+    small_inverse<N>(pack[k].f.a, pack[k].f.swap, pack[k].inverse_weight, c);
+    each_of<N>([&](auto i) __attribute__((always_inline)) {
+      const Pack scale = 1.0 / column_weight[unknown[i()]];
+      each_of<N>([&](auto j) __attribute__((always_inline)) { c[i() * N + j()] *= scale; });
+    });
     trace[k] = upper_gram<N, false>(&c->v, &g->v);
     // the largest eigenvalue is now between 1 / n and 1
     const Pack inverse = Pack(1.0) / trace[k];
@@ -202,7 +293,7 @@ MECHKIN_INLINE void estimate_together(InverseNorm* pack, int count, const double
 inline void estimate_alone(InverseNorm& pack, const double* column_weight, const int* unknown) {
   const int n = pack.f.n;
   Pack *const c = pack.scratch, *const g = c + n * n;
-  weighted_inverse<0>(pack.f.a, pack.f.swap, n, pack.inverse_weight, column_weight, unknown, c);
+  weighted_inverse(pack.f.a, pack.f.swap, n, pack.inverse_weight, column_weight, unknown, c);
   const Pack trace = gram(&c->v, n, &g->v), inverse = Pack(1.0) / trace;
   for (int e = 0; e < n * n; ++e) g[n * n + e] = g[e] * inverse;
   pack.value = sqrt(Pack(largest_eigenvalue(&g[n * n].v, &c->v, n)) * trace);

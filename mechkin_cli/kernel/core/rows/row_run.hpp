@@ -114,6 +114,7 @@ struct RowPack {
   bool wants_level;
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
+  Balance balance = {p, w, zero_wrench(), zero_wrench(), false, Pack(0.0)};
 
   Writer writer(double* base) const { return {base, in.rows, in.row, in.count}; }
 
@@ -239,16 +240,21 @@ struct RowPack {
       else
         write_output(p, w, balance, RowValues{r, in}, output_of(r, o), out);
   }
-  template <class RateByLeader>
-  void balance(const RateByLeader& rate_by_leader) {
-    const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
+  Pack rate_by_leader(int t) const { return in.get(r.constraint_rates, t); }
+  void begin_balance() {
+    balance.moving = r.demand & DEMAND_VELOCITY;
     const RowValues row_values = {r, in};
     const Mask undefined = evaluate_loads(p, w, row_values);
     if (r.loads)
       for (int v = 0; v < p.load_values; ++v) writer(r.loads).put(v, w.load[v]);
     if (r.undefined)
       for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
-    Balance balance = balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, rate_by_leader);
+    ::begin_balance(balance, r.demand & DEMAND_ACCELERATION, r.shift, row_values, [this](int t) { return rate_by_leader(t); });
+  }
+  void finish_balance() {
+    const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
+    const RowValues row_values = {r, in};
+    if (solves_friction_together(p)) ::finish_balance(balance, r.shift, [this](int t) { return rate_by_leader(t); });
     if (wants_level) balance.level = reaction_level(p, w);
     // the chart stands in the one block, behind its closing equations
     if (r.chart_forces)
@@ -306,7 +312,7 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
       find_screws(p, k.w, p.rest[j]);
     }
     if (r.demand & DEMAND_FORCES && p.actuators)
-      find_influence(p, k.w, [&](int t) { return k.in.get(r.constraint_rates, t); });
+      find_influence(p, k.w, [&](int t) { return k.rate_by_leader(t); });
   });
   if (r.demand & DEMAND_VELOCITY) {
     each([&](RowPack& k) { k.read_columns(r.rates, k.w.rate); });
@@ -328,10 +334,16 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
   each([&](RowPack& k) {
     k.write_motion();
     if (r.demand & DEMAND_FORCES)
-      k.balance([&](int t) { return k.in.get(r.constraint_rates, t); });
+      k.begin_balance();
     else if (r.outputs)
       k.write_outputs(nullptr);
   });
+  if (!(r.demand & DEMAND_FORCES)) return;
+  if (solves_friction_together(p)) {
+    Rubbing* const rubbing[] = {&pack[0].w.rubbing, &pack[count - 1].w.rubbing};
+    solve_frictions(p, rubbing, count);
+  }
+  each([&](RowPack& k) { k.finish_balance(); });
 }
 
 // Room for a workspace that stays laid out, before the arrays that it names.

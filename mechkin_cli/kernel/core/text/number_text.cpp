@@ -8,122 +8,143 @@
 
 namespace {
 
-bool is_finite(double x) { return x - x == 0; }
+using Wide = unsigned __int128;
 
-// Pairs of digits, "00" to "99".
-struct Pairs {
-  char text[200] = {};
-  constexpr Pairs() {
-    for (int i = 0; i < 100; ++i) {
-      text[2 * i] = (char)('0' + i / 10);
-      text[2 * i + 1] = (char)('0' + i % 10);
-    }
-  }
-};
+constexpr std::uint64_t SIGN = (std::uint64_t)1 << 63, INFINITE_BITS = (std::uint64_t)0x7FF << 52;
 
-constexpr Pairs PAIRS;
-
-void put_pair(std::uint32_t pair, char* out) { std::memcpy(out, PAIRS.text + 2 * pair, 2); }
-
-void put_eight(std::uint32_t number, char* out) {
-  const std::uint32_t high = number / 10000, low = number % 10000;
-  put_pair(high / 100, out);
-  put_pair(high % 100, out + 2);
-  put_pair(low / 100, out + 4);
-  put_pair(low % 100, out + 6);
+std::uint64_t bits_of(double x) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
 }
 
-constexpr int MOST_DIGITS = 17;  // of the shortest that a double needs
+bool is_finite(double x) { return (bits_of(x) & ~SIGN) < INFINITE_BITS; }
 
-struct PowersOfTen {
-  std::uint64_t of[MOST_DIGITS + 1] = {};
-  constexpr PowersOfTen() {
-    std::uint64_t power = 1;
-    for (std::uint64_t& one : of) {
-      one = power;
-      power *= 10;
-    }
-  }
-};
+// Sixteen bytes as numbers of several sizes, the first one at the lowest address, and its lowest byte before the others.
+typedef std::uint16_t Shorts __attribute__((vector_size(16)));
+typedef std::uint32_t Words __attribute__((vector_size(16)));
+typedef std::uint64_t Halves __attribute__((vector_size(16)));
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
 
-constexpr PowersOfTen POWERS_OF_TEN;
+constexpr std::uint64_t ZEROS = 0x3030303030303030;  // eight characters
 
-// Digits of a number from 1 to below 10^17.
-int digit_count(std::uint64_t number) {
-  const int below = (64 - __builtin_clzll(number)) * 1233 >> 12;  // bits times log10(2)
-  return below + (number >= POWERS_OF_TEN.of[below]);
+void put_eight(std::uint64_t characters, char* out) { std::memcpy(out, &characters, sizeof characters); }
+
+// The first four of eight digits, and 2^32 times the other four.
+std::uint64_t in_halves(std::uint64_t eight) {
+  const std::uint64_t first = eight * 3518437209 >> 45;  // the ten-thousandth part
+  return (eight << 32) - first * (((std::uint64_t)10000 << 32) - 1);
 }
 
-// All MOST_DIGITS places of a number with `count` digits, from the first one on; behind its digits are zeros.
-void put_digits(std::uint64_t number, int count, char* out) {
-  const std::uint64_t places = number * POWERS_OF_TEN.of[MOST_DIGITS - count];
-  const std::uint64_t high = places / 100000000;
-  *out = (char)('0' + high / 100000000);
-  put_eight((std::uint32_t)(high % 100000000), out + 1);
-  put_eight((std::uint32_t)(places % 100000000), out + 9);
+constexpr Shorts HUNDREDS_AND_REST = {1, 65436, 1, 65436, 1, 65436, 1, 65436};  // -100
+
+// Of eight digits that are not all zeros.
+int zeros_behind(std::uint64_t digits) { return (int)((unsigned)__builtin_ctzll(__builtin_bswap64(digits)) / 8); }
+
+__attribute__((always_inline)) inline NumberDigits digits_of(const DecimalNumber& decimal) {
+  constexpr std::uint32_t eight = 100000000;
+  const std::uint64_t high = decimal.digits / eight, most = high / eight;
+  const std::uint64_t upper = high - most * eight, lower = decimal.digits - high * eight;
+  // four digits, then two, then one in a place, of all at once
+  const auto fours = (Shorts)Halves{in_halves(upper), in_halves(lower)};
+  const Shorts hundreds = fours / 100;
+  const Shorts both = hundreds | (Shorts)((Words)hundreds << 16);
+  const Shorts pairs = (Shorts)((Words)fours << 16) + both * HUNDREDS_AND_REST;
+  const Shorts tens = pairs * 103 >> 10;             // a tenth, of what is below 100
+  const Shorts digits = (pairs << 8) - tens * 2559;  // the tens, and 256 times what is left of ten of them
+  const std::uint64_t near = ((Halves)digits)[0], far = ((Halves)digits)[1];
+  const int count = far ? MOST_DIGITS - zeros_behind(far) : near ? MOST_DIGITS - 8 - zeros_behind(near) : 1;
+  return {near | ZEROS, far | ZEROS, (char)('0' + most), count, decimal.whole};
 }
 
-// A point behind some of the digits at `out`.
-void put_point(char* out, int digits) {
-  std::memmove(out + digits + 1, out + digits, MOST_DIGITS - 1);
-  out[digits] = '.';
+void put_behind(const NumberDigits& digits, char* out) {
+  put_eight(digits.near, out);
+  put_eight(digits.far, out + 8);
 }
 
-// Without the zeros that end it.
-DecimalNumber trimmed(DecimalNumber decimal) {
-  if (decimal.digits % 10) return decimal;
-  for (; decimal.digits % 10000 == 0; decimal.exponent += 4) decimal.digits /= 10000;
-  for (; decimal.digits % 10 == 0; ++decimal.exponent) decimal.digits /= 10;
-  return decimal;
-}
-
-std::size_t put_plain(const DecimalNumber& decimal, int count, char* out) {
-  const int whole = count + decimal.exponent;  // digits before the point
+std::size_t put_plain(const NumberDigits& digits, char* out) {
+  const int whole = digits.whole, before = whole - 1;  // the point stands behind `before` of those behind the first
   if (whole <= 0) {
     std::memcpy(out, "0.000000", 8);  // no plain number has more than four zeros behind its point
-    put_digits(decimal.digits, count, out + 2 - whole);
-    return (std::size_t)(2 - whole + count);
+    out += 2 - whole;
+    *out = digits.first;
+    put_behind(digits, out + 1);
+    return (std::size_t)(2 - whole + digits.count);
   }
-  put_digits(decimal.digits, count, out);
-  if (decimal.exponent >= 0) return (std::size_t)whole;
-  put_point(out, whole);
-  return (std::size_t)count + 1;
+  *out = digits.first;
+  if (before < 8) {
+    const std::uint64_t mask = ((std::uint64_t)1 << 8 * before) - 1;
+    put_behind(digits, out + 2);
+    put_eight((digits.near & mask) | (std::uint64_t)'.' << 8 * before | (digits.near & ~mask) << 8, out + 1);
+  } else {
+    put_behind(digits, out + 1);
+    out[whole] = '.';
+    put_eight(digits.far >> 8 * (before - 8), out + whole + 1);
+  }
+  return (std::size_t)(digits.count <= whole ? whole : digits.count + 1);
 }
 
-std::size_t put_scientific(const DecimalNumber& decimal, int count, char* out) {
-  put_digits(decimal.digits, count, out);
-  char* at = out + count;
-  if (count > 1) {
-    put_point(out, 1);
-    ++at;
-  }
-  const int power = count - 1 + decimal.exponent;
+std::size_t put_scientific(const NumberDigits& digits, char* out) {
+  out[0] = digits.first;
+  out[1] = '.';
+  put_behind(digits, out + 2);
+  char* at = out + digits.count + (digits.count > 1);
+  const int power = digits.whole - 1;
   *at++ = 'e';
   *at++ = power < 0 ? '-' : '+';
-  const auto size = (std::uint32_t)(power < 0 ? -power : power);
-  if (size >= 100) *at++ = (char)('0' + size / 100);
-  put_pair(size % 100, at);
-  return (std::size_t)(at + 2 - out);
+  auto size = (std::uint32_t)(power < 0 ? -power : power);
+  if (size >= 100) {
+    *at++ = (char)('0' + size / 100);
+    size %= 100;
+  }
+  *at++ = (char)('0' + size / 10);
+  *at++ = (char)('0' + size % 10);
+  return (std::size_t)(at - out);
 }
 
-// Shortest digits, without an exponent for least <= |x| < 1e16.
-std::size_t shortest(double x, double least, char* out) {
-  const double magnitude = x < 0 ? -x : x;
-  if (magnitude == 0) {
+// Digits before the point of what is below 1e16, and of 1e-5 and 1e-4.
+constexpr int MOST_WHOLE = 16, LEAST_WHOLE = -4, LEAST_WHOLE_OF_JSON = -3;
+
+// Whether a magnitude has digits: it is neither zero, nor infinite, nor not a number.
+bool has_digits(std::uint64_t bits) { return bits - 1 < INFINITE_BITS - 1; }
+
+// Shortest digits, without an exponent where the first of them stands at 10^(least - 1) or above, and the number is
+// below 1e16; nothing of what is not finite. `digits` says those of a magnitude.
+template <class DigitsOf>
+std::size_t shortest(double x, int least, char* out, const DigitsOf& digits_of_bits) {
+  const std::uint64_t bits = bits_of(x) & ~SIGN;
+  if (!has_digits(bits)) {
     *out = '0';
-    return 1;
+    return bits == 0;
   }
-  const DecimalNumber decimal = trimmed(shortest_decimal(magnitude));
-  const int count = digit_count(decimal.digits);
-  const bool sign = x < 0;
+  const NumberDigits& digits = digits_of_bits(bits);
+  const bool sign = bits_of(x) >> 63;
   *out = '-';
-  const bool plain = magnitude >= least && magnitude < 1e16;
-  return (plain ? put_plain : put_scientific)(decimal, count, out + sign) + sign;
+  out += sign;
+  const bool is_plain = digits.whole >= least && digits.whole <= MOST_WHOLE;
+  return sign + (is_plain ? put_plain(digits, out) : put_scientific(digits, out));
+}
+
+std::size_t shortest(double x, int least, char* out) {
+  return shortest(x, least, out, [](std::uint64_t bits) { return digits_of(shortest_decimal(bits)); });
 }
 
 }  // namespace
 
-std::size_t number_text(double x, char* out) { return is_finite(x) ? shortest(x, 1e-5, out) : 0; }
+void find_digits(const double* numbers, std::size_t count, NumberDigits* digits) {
+  DecimalNumber decimals[NUMBERS_TOGETHER];
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint64_t bits = bits_of(numbers[k]) & ~SIGN;
+    decimals[k] = has_digits(bits) ? shortest_decimal(bits) : DecimalNumber{};
+  }
+  for (std::size_t k = 0; k < count; ++k) digits[k] = digits_of(decimals[k]);
+}
+
+std::size_t number_text(double x, const NumberDigits& digits, char* out) {
+  return shortest(x, LEAST_WHOLE, out, [&](std::uint64_t) -> const NumberDigits& { return digits; });
+}
+
+std::size_t number_text(double x, char* out) { return shortest(x, LEAST_WHOLE, out); }
 
 std::size_t number_text(double x, int significant_digits, char* out) {
   char* const limit = out + NUMBER_TEXT_SIZE;
@@ -134,7 +155,7 @@ std::size_t number_text(double x, int significant_digits, char* out) {
 }
 
 std::size_t json_text(double x, char* out) {
-  if (is_finite(x)) return shortest(x, 1e-4, out);
+  if (is_finite(x)) return shortest(x, LEAST_WHOLE_OF_JSON, out);
   std::memcpy(out, "null", 4);
   return 4;
 }
@@ -148,8 +169,6 @@ std::size_t real_text(double x, char* out) {
 
 namespace {
 
-using Wide = unsigned __int128;
-
 constexpr int MOST_EXACT_DECIMALS = 22;  // 53 bits times 10^22 are 127 bits
 constexpr Wide LARGEST_SCALED = (Wide)1 << 64;
 
@@ -161,8 +180,7 @@ Wide power_of_ten(int exponent) {
 
 // |x| * 10^decimals, the exact value rounded to a whole number, ties to even; false where it is not below 2^64.
 bool scaled_exactly(double magnitude, int decimals, std::uint64_t& scaled) {
-  std::uint64_t bits;
-  std::memcpy(&bits, &magnitude, sizeof bits);
+  const std::uint64_t bits = bits_of(magnitude);
   const int raised = (int)(bits >> 52);
   const std::uint64_t fraction = bits & (((std::uint64_t)1 << 52) - 1);
   const std::uint64_t mantissa = raised ? fraction | (std::uint64_t)1 << 52 : fraction;

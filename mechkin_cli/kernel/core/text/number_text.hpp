@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 // Room for the longest number, `-0.000012345678901234567`.
 constexpr std::size_t NUMBER_TEXT_SIZE = 32;
@@ -15,6 +16,23 @@ constexpr int MOST_SIGNIFICANT_DIGITS = 15;
 
 // Writes x at `out` (NUMBER_TEXT_SIZE characters, no terminating zero); returns the length.
 std::size_t number_text(double x, char* out);
+
+// The shortest digits of a number without its sign, as characters.
+struct NumberDigits {
+  std::uint64_t near, far;  // the sixteen behind the first, in order from the lowest byte on
+  char first;
+  int count;  // without the zeros at the end
+  int whole;  // so many stand before the point
+};
+
+// Numbers that belong together: each waits for products of its own, and those of the others fit in between.
+constexpr std::size_t NUMBERS_TOGETHER = 16;
+
+// The digits of up to NUMBERS_TOGETHER numbers; anything of zeros and of what is not finite.
+void find_digits(const double* numbers, std::size_t count, NumberDigits* digits);
+
+// As `number_text` of a number whose digits were found.
+std::size_t number_text(double x, const NumberDigits& digits, char* out);
 
 // The same for x rounded (the exact binary value, ties to even) to 1 ... MOST_SIGNIFICANT_DIGITS digits.
 std::size_t number_text(double x, int significant_digits, char* out);

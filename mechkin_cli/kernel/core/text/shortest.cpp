@@ -1,7 +1,5 @@
 #include "text/shortest.hpp"
 
-#include <cstring>
-
 namespace {
 
 using Wide = unsigned __int128;
@@ -97,18 +95,29 @@ int floor_log2_of_power_of_ten(int k) { return (k * 1741647) >> 19; }
 int floor_log10_of_power_of_two(int q) { return (q * 1262611) >> 22; }
 int floor_log10_of_three_quarters(int q) { return (q * 1262611 - 524031) >> 22; }
 
-}  // namespace
+struct PowersOfTen {
+  std::uint64_t of[MOST_DIGITS + 1] = {};
+  constexpr PowersOfTen() {
+    std::uint64_t power = 1;
+    for (std::uint64_t& one : of) {
+      one = power;
+      power *= 10;
+    }
+  }
+};
 
-DecimalNumber shortest_decimal(double magnitude) {
-  std::uint64_t bits;
-  std::memcpy(&bits, &magnitude, sizeof bits);
-  const int raised = (int)(bits >> 52);
-  const std::uint64_t fraction = bits & (((std::uint64_t)1 << 52) - 1);
-  const std::uint64_t c = raised ? fraction | (std::uint64_t)1 << 52 : fraction;
-  const int q = (raised ? raised : 1) - 1075;  // magnitude = c 2^q
-  if (q <= 0 && q > -53 && (c & (((std::uint64_t)1 << -q) - 1)) == 0) return {c >> -q, 0};
-  // four times the ends of what reads back as this double; below a power of two its neighbour is nearer
-  const bool is_near_below = fraction == 0 && raised > 1;
+constexpr PowersOfTen POWERS_OF_TEN;
+
+// digits * 10^exponent, from 1 to MOST_DIGITS digits.
+DecimalNumber decimal_of(std::uint64_t digits, int exponent) {
+  const int below = (64 - __builtin_clzll(digits)) * 1233 >> 12;  // bits times log10(2)
+  const int count = below + (digits >= POWERS_OF_TEN.of[below]);
+  return {digits * POWERS_OF_TEN.of[MOST_DIGITS - count], count + exponent};
+}
+
+// Of the double c 2^q; below a power of two its neighbour is nearer.
+__attribute__((noinline, cold)) DecimalNumber decided_exactly(std::uint64_t c, int q, bool is_near_below) {
+  // four times the ends of what reads back as this double
   const int k = is_near_below ? floor_log10_of_three_quarters(q) : floor_log10_of_power_of_two(q);
   const int h = q + floor_log2_of_power_of_ten(-k) + 1;
   const Power& power = POWERS.of[-k - LEAST_POWER];
@@ -116,13 +125,41 @@ DecimalNumber shortest_decimal(double magnitude) {
   const std::uint64_t value = at.rounded_to_odd(), odd = c & 1;  // the ends belong to even ones
   const std::uint64_t lower = at.minus(shifted(power, h + !is_near_below)).rounded_to_odd() + odd;
   const std::uint64_t upper = at.plus(shifted(power, h + 1)).rounded_to_odd() - odd;
-  // with a digit less, where one of its two neighbours alone lies inside; chosen without a branch, which would be
-  // guessed wrong for every third number
+  // with a digit less, where one of its two neighbours alone lies inside
   const std::uint64_t s = value / 4, tenth = s / 10, middle = 4 * s + 2;
   const bool low_tenth = lower <= 40 * tenth, high_tenth = 40 * tenth + 40 <= upper;
   const bool low = lower <= 4 * s, high = 4 * s + 4 <= upper;
-  const bool is_shorter = (s >= 10) & (low_tenth != high_tenth);
-  const bool is_nearer = (value > middle) | ((value == middle) & (s & 1));
-  const std::uint64_t longer = s + (low != high ? high : is_nearer);
-  return {is_shorter ? tenth + high_tenth : longer, k + is_shorter};
+  const bool is_nearer = value > middle || (value == middle && (s & 1));
+  if (s >= 10 && low_tenth != high_tenth) return decimal_of(tenth + high_tenth, k + 1);
+  return decimal_of(s + (low != high ? high : is_nearer), k);
+}
+
+// Whether two numbers differ by no more than what was cut off of both.
+bool is_close(std::uint64_t a, std::uint64_t b) { return a - b + 4 <= 8; }
+
+}  // namespace
+
+DecimalNumber shortest_decimal(std::uint64_t bits) {
+  const int raised = (int)(bits >> 52);
+  const std::uint64_t fraction = bits & (((std::uint64_t)1 << 52) - 1);
+  const std::uint64_t c = raised ? fraction | (std::uint64_t)1 << 52 : fraction;
+  const int q = (raised ? raised : 1) - 1075;  // c 2^q
+  if (q <= 0 && q > -53 && (c & (((std::uint64_t)1 << -q) - 1)) == 0) return decimal_of(c >> -q, 0);
+  if (!raised || !fraction) return decided_exactly(c, q, raised > 1 && !fraction);
+  // s and the 64 bits behind its point, of a number of 16 or 17 digits; the ends lie `half` to either side, from a half
+  // to 5. Against a multiple of ten both are compared in parts of 2^-60.
+  const int k = floor_log10_of_power_of_two(q), h = q + floor_log2_of_power_of_ten(-k) + 1;
+  const Power& power = POWERS.of[-k - LEAST_POWER];
+  const Wide upper = product(power, c << h).upper;
+  const std::uint64_t s = (std::uint64_t)(upper >> 64), behind = (std::uint64_t)upper, unit = s % 10;
+  const std::uint64_t half = power.high >> (5 - h), above = unit << 60 | behind >> 4, below = ((std::uint64_t)10 << 60) - above;
+  constexpr std::uint64_t middle = (std::uint64_t)1 << 63;
+  if (is_close(above, half) | is_close(below, half) | is_close(behind, middle)) return decided_exactly(c, q, false);
+  // no branches, which would be guessed wrong for every third number: the ends are less than ten apart, so that one
+  // multiple of ten lies between them, or none
+  const bool low = above < half, high = below < half;
+  const std::uint64_t is_longer = (low | high) - (std::uint64_t)1;  // all bits, or none
+  const std::uint64_t digits = s + ((behind >> 63) & is_longer) + ((10 * high - unit) & ~is_longer);
+  const bool is_short = digits < POWERS_OF_TEN.of[MOST_DIGITS - 1];
+  return {is_short ? 10 * digits : digits, k + MOST_DIGITS - is_short};
 }

@@ -118,6 +118,33 @@ std::string csv_field(std::string_view text, char between) {
   return field += '"';
 }
 
+namespace {
+
+// Neighbouring cells of a row, of which the shortest numbers find their digits together.
+class Together {
+ public:
+  Together(const TextColumn* columns, std::size_t count, std::size_t row) : columns_(columns), row_(row) {
+    for (std::size_t c = 0; c < count; ++c) numbers_[c] = is_shortest(columns[c]) ? columns[c].numbers[row] : 0.0;
+    find_digits(numbers_, count, digits_);
+  }
+  char* put(std::size_t c, char* at) const {
+    if (is_shortest(columns_[c])) return at + number_text(numbers_[c], digits_[c], at);
+    return put_cell(columns_[c], row_, at);
+  }
+
+ private:
+  static bool is_shortest(const TextColumn& column) {
+    return column.numbers && column.style.notation == Notation::shortest;
+  }
+
+  const TextColumn* columns_;
+  std::size_t row_;
+  double numbers_[NUMBERS_TOGETHER];
+  NumberDigits digits_[NUMBERS_TOGETHER];
+};
+
+}  // namespace
+
 std::size_t csv_lines(const std::vector<TextColumn>& columns, std::size_t first, std::size_t rows,
                       const CsvStyle& style, int threads, char* room, std::size_t size, std::vector<LinePiece>& pieces) {
   std::size_t capacity = 3;
@@ -125,11 +152,15 @@ std::size_t csv_lines(const std::vector<TextColumn>& columns, std::size_t first,
   const char between = style.decimal_comma ? ';' : ',';
   return write_lines(first, rows, capacity, threads, room, size, pieces, [&](std::size_t row, char* at) {
     char* const line = at;
-    for (const TextColumn& column : columns) {
-      if (&column != columns.data()) *at++ = between;
-      char* const cell = at;
-      at = put_cell(column, row, at);
-      if (style.decimal_comma && column.numbers) std::replace(cell, at, '.', ',');
+    for (std::size_t begin = 0; begin < columns.size(); begin += NUMBERS_TOGETHER) {
+      const std::size_t count = std::min(columns.size() - begin, NUMBERS_TOGETHER);
+      const Together cells(&columns[begin], count, row);
+      for (std::size_t c = 0; c < count; ++c) {
+        if (begin + c) *at++ = between;
+        char* const cell = at;
+        at = cells.put(c, at);
+        if (style.decimal_comma && columns[begin + c].numbers) std::replace(cell, at, '.', ',');
+      }
     }
     if (style.quoted_empty && at == line) at = put("\"\"", at);
     *at++ = '\n';
