@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -238,8 +239,8 @@ class ColumnSample:
             raise AlreadyRefused(name)
         if wanted is None:
             named = self.fields.definitions.named
-            known = [*self.parameters, *named, *self.quantities, *self.texts]
-            raise UnknownName(name, known, self.problem.why_not(name))
+            known = chain(self.parameters, named, self.quantities, self.texts)
+            raise UnknownName(name, known, partial(self.problem.why_not, name))
         return Quantity(wanted.value([np.ones(1)] * 3), wanted.dimension)
 
 

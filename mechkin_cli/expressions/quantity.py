@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -109,18 +110,25 @@ class ExpressionError(MechkinError):
 
 class UnknownName(KeyError):
     """Raised by a resolver for a name that it does not have; `known` are the names that it has,
-    `reason` why it has none of this kind."""
+    `reason` says why it has none of this kind, or tells that where it is asked: resolvers are asked
+    for names of components, too, which they need not have."""
 
-    def __init__(self, name: str, known: Iterable[str] = (), reason: str | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        known: Iterable[str] = (),
+        reason: str | Callable[[], str | None] | None = None,
+    ) -> None:
         self.name = name
         self.known = known
         self.reason = reason
         super().__init__(name)
 
-    @property
+    @cached_property
     def hint(self) -> str | None:
         """The reason, or else the nearest known names, or all of them when they are few."""
-        return self.reason or nearest_hint(self.name, self.known)
+        reason = self.reason() if callable(self.reason) else self.reason
+        return reason or nearest_hint(self.name, self.known)
 
 
 # Limits on expressions: far above what a drawing needs, far below what could stall a reader.

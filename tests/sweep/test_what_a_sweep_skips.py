@@ -11,6 +11,7 @@ import mechkin_cli as mk
 from mechkin_cli import tolerances
 from mechkin_cli.assembly.near import far_notes
 from mechkin_cli.assembly.start import HOME, NEAR, choose_start
+from mechkin_cli.mechanism.quantities import Catalogue
 from mechkin_cli.search.clusters import is_in_reach
 from mechkin_cli.search.search import all_assemblies
 
@@ -43,8 +44,12 @@ def test_no_search_is_left_out_that_would_have_told_the_letter(name: str) -> Non
 def test_a_sweep_of_positions_lists_no_quantities() -> None:
     for name in ("rcsr", "sevenr", "stewart"):
         model = mk.load(FILE_OF[name])
+        quantities = model.problem.quantities()
+        assert isinstance(quantities, Catalogue)
+        of_tables = quantities.made
         model.analyze(tables=[])
-        assert "_quantities" not in model.problem.__dict__
+        assert quantities.made == of_tables
+        assert vars(quantities)["_every"] is None
 
 
 @pytest.mark.parametrize("number", range(24))
