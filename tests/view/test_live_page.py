@@ -107,6 +107,24 @@ def test_the_page_follows_the_file(server: LiveServer, browser: Browser) -> None
     assert all(each.startswith(server.address) for each in told["asked"])
 
 
+def test_an_end_while_a_picture_is_on_its_way_is_told_last(
+    server: LiveServer, browser: Browser
+) -> None:
+    browser.visit(server.address)
+    eventually(lambda: browser.inside(OFF), 40)
+    # what is on its way until it is let go
+    browser.evaluate(
+        "window.fetch = () => new Promise((done) => { window.letGo = () => done({status: 204}) })"
+    )
+    server.follower.path.write_text(CRANK.replace("40 mm", "41 mm"))
+    eventually(lambda: browser.evaluate("Boolean(window.letGo)"), True)
+    server.close()
+    state = "document.querySelector('#state').textContent"
+    eventually(lambda: "mechkin has ended" in browser.evaluate(state), True)
+    browser.evaluate("window.letGo(), new Promise((done) => setTimeout(done, 100)).then(() => 1)")
+    assert "mechkin has ended" in browser.evaluate(state)
+
+
 def write_from_the_page(browser: Browser, values: dict[str, float]) -> None:
     """Lets the page tell that it was set to other values, as it does when they are dragged."""
     message = json.dumps({"mechkin": "parameters", "values": values, "texts": {}})

@@ -77,12 +77,13 @@ class Live {
   }
 
   async #look(seen) {
+    // a picture that is still on its way says no more what was seen before
+    this.#seen = seen;
     if (seen.ended) {
       this.#source.close();
       this.#ended();
       return;
     }
-    this.#seen = seen;
     const { faults, picture } = seen;
     showFaults(seen);
     if (faults.length > 0) this.#tell(counted(faults.length, "fault"), "bad");
