@@ -265,7 +265,7 @@ class _Branch:
                 self.values[number, taken.rows] = own
             known += taken.rows.tolist()
             # each node tells of the rows before it, and the last one of those behind it, too
-            least = [_least(matrix) for matrix in taken.stiffness.transpose(2, 0, 1)]
+            least = _least_each(taken.stiffness)
             ends = np.abs(taken.nodes - at) + 1
             ends[-1] = taken.rows.size + 1
             rows = at + step * np.arange(ends[-1])
@@ -276,7 +276,7 @@ class _Branch:
         """Tells the least stiffness of a row."""
         found = self.stretches.beside(Places.of(place, self.times[row]))
         if found.good[0]:
-            self.least[row] = _least(found.stiffness[:, :, 0])
+            self.least[row] = _least_each(found.stiffness)[0]
 
     def lost(self, row: int, at: str | None = None, hint: str | None = None) -> End:
         """That the branch could not be followed beyond a row, to which place at most, and what may
@@ -312,8 +312,9 @@ class _Branch:
 _NO_END = Status.ok, Diagnostic("", "note", "")
 
 
-def _least(matrix: Floats) -> float:
-    """The least eigenvalue of the symmetric part of a stiffness."""
-    if matrix.size == 1:
-        return float(matrix[0, 0])
-    return float(eigen(0.5 * (matrix + matrix.T))[0][0])
+def _least_each(stiffness: Floats) -> Floats:
+    """The least eigenvalues of the symmetric parts of stiffnesses (free, free, places)."""
+    if len(stiffness) == 1:
+        return np.asarray(stiffness[0, 0])
+    halves = 0.5 * (stiffness + stiffness.swapaxes(0, 1))
+    return np.array([eigen(halves[:, :, k])[0][0] for k in range(halves.shape[2])])

@@ -10,6 +10,7 @@ branch, so each row is judged against the one before it.
 
 from __future__ import annotations
 
+from functools import cache
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -51,13 +52,11 @@ class Span(NamedTuple):
         told: numbers of the known row before it and of the nodes, evenly spaced (1 + nodes,).
         places: of all these.
         stiffness: (free, free, 1 + nodes).
-        is_short: whether it ends before half of what was predicted.
     """
 
     told: Rows
     places: Places
     stiffness: Floats
-    is_short: bool
 
     @property
     def size(self) -> int:
@@ -102,6 +101,7 @@ class Stretches:
         self._steps = np.zeros((len(values), 1 + 2 * count, 1))
         for number, k in enumerate(self.free):
             self._steps[k, 1 + 2 * number], self._steps[k, 2 + 2 * number] = h, -h
+        self._free_rows = np.array(self.free)[:, None]
         self.driven = [k for k in range(len(values)) if k not in statics.free]
 
     def onward(self, place: Place, known: list[int], step: int) -> Taken | None:
@@ -133,9 +133,6 @@ class Stretches:
             for number in self.free:
                 self.values[number, nodes] = span.places.inputs[number, 1:]
             told = np.concatenate([told, nodes])
-            if span.is_short:
-                # the rows between the nodes tell more of the branch where it bends
-                break
         return spans
 
     def _span(self, place: Place, told: Rows, step: int) -> Span | None:
@@ -152,20 +149,14 @@ class Stretches:
             apart = -(-count // tolerances.REST_NODES)
             ahead = np.arange(apart, count + 1, apart)
             nodes, free = here + step * ahead, predicted[:, ahead - 1]
-            guesses = Places.of(place, self.times[here]).followed_by(
-                self._followed(place, nodes, free)
-            )
+            guesses = self._followed(place, told[-1:], nodes, free)
             at, stiffness = self.statics.balanced(guesses, known=True)
             if at.times.size > 1:
                 good = self._smooth(place, at.only(slice(1, None)), free, first=told.size == 1)
                 if good:
-                    own = int(ahead[good - 1])
-                    is_short = 2 * own < count
-                    self.most = own if is_short else tolerances.REST_GROWTH * own
+                    self.most = tolerances.REST_GROWTH * int(ahead[good - 1])
                     rows = np.concatenate([told[-1:], nodes[:good]])
-                    return Span(
-                        rows, at.only(slice(0, good + 1)), stiffness[:, :, : good + 1], is_short
-                    )
+                    return Span(rows, at.only(slice(0, good + 1)), stiffness[:, :, : good + 1])
             # rows far apart may fail where the next one does not
             most = max(1, count // tolerances.REST_GROWTH) if count > 1 else 0
         self.most = 1
@@ -179,7 +170,7 @@ class Stretches:
         if told.size == 1:
             return self._along_rate(place, int(told[0]), rows)
         points = self._points(told, rows.size)
-        values = self.values[np.array(self.free)[:, None], points]
+        values = self.values[self._free_rows, points]
         # the terms of Newton's polynomial; it ends with the one that leaves most rows told
         differences = [_divided(own, points.tolist()) for own in values.tolist()]
         start = values[:, :1]
@@ -203,9 +194,8 @@ class Stretches:
         before = told[: -2 - max(count, most) : -1]
         ago = np.abs(before - told[-1])
         apart = max(1, min(int(ago[-1]), count) // most)
-        wanted = np.searchsorted(ago, apart * np.arange(most + 1))
-        wanted = wanted[wanted < before.size]
-        return before[wanted[np.diff(wanted, prepend=-1) > 0]]
+        wanted = np.searchsorted(ago, apart * np.arange(most + 1)).tolist()
+        return before[[number for number in dict.fromkeys(wanted) if number < before.size]]
 
     def _along_rate(self, place: Place, row: int, rows: Rows) -> Floats | None:
         """The same where one row alone is known, by the rate of the branch there."""
@@ -227,20 +217,16 @@ class Stretches:
 
     # How they are corrected.
 
-    def _followed(self, place: Place, rows: Rows, free: Floats) -> Places:
-        """Places of rows whose coordinates at rest are given, closed along straight ways from a
-        place, as far as the loops can be followed."""
-        inputs = self.values[:, rows]
-        inputs[self.free] = free
-        way = self.statics.way(np.concatenate([place.inputs[:, None], inputs], axis=1), place)
-        reached = max(way.reached - 1, 0)
-        times = self.times[rows[:reached]]
-        return Places(
-            inputs[:, :reached],
-            way.states[:, 1 : reached + 1],
-            way.turns[:, 1 : reached + 1],
-            times,
-        )
+    def _followed(self, place: Place, row: Rows, rows: Rows, free: Floats) -> Places:
+        """A place, that of one `row` (1,), and those of rows whose coordinates at rest are given,
+        closed along straight ways from it, as far as the loops can be followed."""
+        every = np.concatenate([row, rows])
+        inputs = self.values[:, every]
+        inputs[:, 0] = place.inputs
+        inputs[self.free, 1:] = free
+        way = self.statics.way(inputs, place)
+        reached = max(way.reached, 1)
+        return Places(inputs[:, :reached], way.states, way.turns, self.times[every[:reached]])
 
     def _filled(self, place: Place, known: list[int], spans: list[Span]) -> Taken | None:
         """The rows of some spans, those between their nodes by interpolation and corrections with
@@ -256,7 +242,7 @@ class Stretches:
             between.append(_interpolated(span.told, np.concatenate(numbers), own))
         found = np.concatenate(between, axis=1)
         free, slopes = found[:count], found[count:].reshape(count, count, -1)
-        at = self._followed(place, rows, free)
+        at = self._followed(place, spans[0].told[:1], rows, free).only(slice(1, None))
         at, _ = self.statics.balanced(at, slopes[:, :, : at.times.size])
         good = self._smooth(place, at, free, first=len(known) == 1)
         good = self._joined(place, known, at.only(slice(0, good))) if good else 0
@@ -394,13 +380,18 @@ def _sides(matrices: Floats) -> Floats:
     return np.array([determinant(matrices[:, :, k]) for k in range(matrices.shape[2])])
 
 
+@cache
+def _weights(count: int) -> Floats:
+    """The barycentric weights of evenly spaced points."""
+    return np.array([(1 - 2 * (k % 2)) * comb(count - 1, k) for k in range(count)], dtype=float)
+
+
 def _interpolated(points: Rows, numbers: Floats, rows: Rows) -> Floats:
     """Numbers (numbers, rows) on the polynomials through those (numbers, points) at some evenly
     spaced points, by Lagrange's formula with barycentric weights."""
     away = rows - points[:, None]
-    weights = np.array([(1 - 2 * (k % 2)) * comb(points.size - 1, k) for k in range(points.size)])
     met = away == 0
-    shares = weights[:, None] / np.where(met, 1.0, away)
+    shares = _weights(points.size)[:, None] / np.where(met, 1.0, away)
     shares = np.where(met.any(axis=0), met, shares)
     total, whole = np.zeros((len(numbers), rows.size)), np.zeros(rows.size)
     for point, share in zip(numbers.T, shares, strict=True):
