@@ -196,12 +196,6 @@ def markdown_text(
     headers: Sequence[str], columns: Sequence[DecimalColumn | WordColumn], threads: int = 1
 ) -> bytes: ...
 def json_list(column: Floats | WordColumn, threads: int = 1) -> bytes: ...
-def has_fast_checksum() -> bool:
-    """Whether `checksum` is faster here than `zlib.crc32`."""
-
-def checksum(bytes: memoryview, before: int) -> int:
-    """As `zlib.crc32`."""
-
 def extremes(numbers: Floats) -> tuple[int, int, float, float]:
     """Of some numbers (rows,): how many are there (no nan), how many are infinite, the largest and
     the smallest; -inf and inf of none."""

@@ -14,9 +14,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
+from zlib import crc32
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.file_set import (
     PART,
@@ -156,15 +156,6 @@ _HEAD = "# the files of a run of mechkin analyze: the next one in this folder re
 _LINE = re.compile(r"(?P<sum>[0-9a-f]{8}) (?P<size>[0-9]+) (?P<name>[^/\\\0]+)")
 
 
-def checksum(view: memoryview, before: int) -> int:
-    """CRC-32 of bytes behind others, whose checksum is `before`."""
-    if _kernel.has_fast_checksum():
-        return _kernel.checksum(view, before)
-    from zlib import crc32
-
-    return crc32(view, before)
-
-
 class Digest(NamedTuple):
     """What a file is known by: its checksum and its size."""
 
@@ -204,7 +195,7 @@ def _is_as_written(path: Path, known: Digest) -> bool:
     found = 0
     with open(path, "rb") as stream:
         while part := stream.read(PART):
-            found = checksum(memoryview(part), found)
+            found = crc32(part, found)
     return found == known.checksum
 
 
@@ -253,7 +244,7 @@ class OutputFile(io.RawIOBase):
         view = memoryview(data).cast("B")
         if self._has_failed:
             return view.nbytes
-        self._checksum = checksum(view, self._checksum)
+        self._checksum = crc32(view, self._checksum)
         self._size += view.nbytes
         if self.held is not None and self._size <= HELD_BYTES:
             self.held += view

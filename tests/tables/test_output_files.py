@@ -6,17 +6,13 @@ import errno
 import gc
 import io
 import os
-import random
-from itertools import cycle
 from pathlib import Path
-from zlib import crc32
 
 import pytest
 from tables.streamed import cut, random_table
 from tables.test_file_set import DONE, KILLED, REFUSED, child, debris, die, fail, files, interrupt
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.tables import (
     OutputFolder,
     TableStream,
@@ -28,7 +24,6 @@ from mechkin_cli.tables import (
     write_table,
 )
 from mechkin_cli.tables.csv import CsvStyle, TextRoom
-from mechkin_cli.tables.folder import checksum
 from mechkin_cli.tables.writers import STREAM_FORMATS
 from mechkin_cli.tolerances import HELD_BYTES, TEXT_ROOM
 
@@ -265,15 +260,3 @@ def test_memory_of_a_stream_is_that_of_a_block(tmp_path: Path) -> None:
     tracemalloc.stop()
     assert file.digest.size > 10 * HELD_BYTES
     assert peak < TEXT_ROOM + 4 * HELD_BYTES  # of the room a block touches what it needs
-
-
-@pytest.mark.parametrize("before", [0, 0xFFFFFFFF, 0x12345678])
-def test_checksums_are_those_of_zlib(before: int) -> None:
-    """By groups of 64 and 16 bytes, and what is left of them, wherever they begin in memory."""
-    data = random.Random(1).randbytes(70_000)
-    sizes = [*range(200), 1000, 65_535, 65_536, 69_000]
-    for size, start in zip(sizes, cycle((0, 1, 7, 16)), strict=False):
-        part = memoryview(data)[start : start + size]
-        assert checksum(part, before) == crc32(part, before), size
-        if _kernel.has_fast_checksum():
-            assert _kernel.checksum(part, before) == crc32(part, before), size

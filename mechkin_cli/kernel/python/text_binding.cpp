@@ -1,5 +1,5 @@
-// Python's view of numbers and tables as text, of the checksum of files, and of how far numbers reach; where another
-// thread changes the numbers meanwhile, the text is of either. A column is a float64 array; with a style of its own a tuple
+// Python's view of numbers and tables as text, and of how far numbers reach; where another thread changes the numbers
+// meanwhile, the text is of either. A column is a float64 array; with a style of its own a tuple
 // (array, scientific, decimals, trimmed); one of words a pair of int32 codes and the texts they stand for.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -11,7 +11,6 @@
 #include "arithmetic/extremes.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "text/checksum.hpp"
 #include "text/table_text.hpp"
 
 namespace nb = nanobind;
@@ -223,13 +222,6 @@ std::tuple<std::size_t, std::size_t, double, double> extremes_of(const Row& numb
   return {found.cells, found.infinite, found.largest, found.smallest};
 }
 
-using Bytes = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-
-std::uint32_t checksum_of(const Bytes& bytes, std::uint32_t before) {
-  const nb::gil_scoped_release released;
-  return checksum(bytes.data(), bytes.shape(0), before);
-}
-
 }  // namespace
 
 void bind_text(nb::module_& m) {
@@ -240,8 +232,6 @@ void bind_text(nb::module_& m) {
         "decimal_comma"_a = false, "threads"_a = 1);
   m.def("json_lines", &json, "keys"_a, "columns"_a, "first"_a, "room"_a, "whole"_a, "threads"_a = 1);
   m.def("markdown_text", &markdown, "headers"_a, "columns"_a, "threads"_a = 1);
-  m.def("has_fast_checksum", &has_fast_checksum);
-  m.def("checksum", &checksum_of, "bytes"_a, "before"_a);
   m.def("extremes", &extremes_of, "numbers"_a);
   m.def("json_list", &json_list, "column"_a, "threads"_a = 1);
 }
