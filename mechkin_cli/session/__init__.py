@@ -33,7 +33,7 @@ __getattr__, __dir__ = lazy_names(
         "held_values input_number input_numbers input_text input_unit kernel_inputs "
         "quaternion_product reduce_angle round_of turn_of turned_quaternion",
         "kernel_run": "Ask Batch Chart POSITIONS PreciseConstants RESIDUAL_TESTS RowInputs "
-        "assembly_size run turn_count",
+        "assembly_size balance run turn_count",
         "path": "Route places_at places_of",
         "redundancy": "equations_that_follow",
         "session": "Between Continued Exchanged Packing Session exchange find_limit lies_in_family "

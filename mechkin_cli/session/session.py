@@ -44,7 +44,6 @@ from mechkin_cli.session.kernel_run import (
     Batch,
     PreciseConstants,
     RowInputs,
-    balance,
     run as run_kernel,
 )
 from mechkin_cli.structure import SolverGraph, exchanged, is_redundant, structure_of
@@ -441,30 +440,6 @@ class Session:
         packing = self.packing
         return run_kernel(
             self.plan, rows, ask, constants, lanes=packing.lanes, threads=packing.threads
-        )
-
-    def balance(
-        self,
-        rows: RowInputs,
-        free: Sequence[tuple[int, int, float]],
-        cyclic: Sequence[int],
-        readout: Readout,
-        stiffness: Floats | None = None,
-        *,
-        known: bool = False,
-    ) -> tuple[int, Floats, Floats, Floats]:
-        """Places at which the loads balance; arguments as those of `kernel_run.balance`."""
-        packing = self.packing
-        return balance(
-            self.plan,
-            rows,
-            free,
-            cyclic,
-            readout,
-            stiffness,
-            known=known,
-            lanes=packing.lanes,
-            threads=packing.threads,
         )
 
 

@@ -19,7 +19,7 @@ from mechkin_cli.mechanism import ZERO, effort_quantity
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.session import Ask, RowInputs, exchange, turn_of
+from mechkin_cli.session import Ask, RowInputs, balance, exchange, turn_of
 from mechkin_cli.statics.forces import combined, summed
 
 if TYPE_CHECKING:
@@ -193,8 +193,18 @@ class Statics:
         slots = (readout.slots[wanted.name].start for wanted in readout.wanted)
         free = [*zip(self.free, slots, self.units.tolist(), strict=True)]
         cyclic = np.flatnonzero(self.cyclic).tolist()
-        found = self.session.balance(rows, free, cyclic, readout, stiffness, known=known)
-        count, inputs, states, slopes = found
+        lanes, threads = self.session.packing
+        count, inputs, states, slopes = balance(
+            self.session.plan,
+            rows,
+            free,
+            cyclic,
+            readout,
+            stiffness,
+            known=known,
+            lanes=lanes,
+            threads=threads,
+        )
         at = Places(inputs, states, guesses.turns, guesses.times)
         return at.only(slice(0, count)), slopes[:, :, :count]
 

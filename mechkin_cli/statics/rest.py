@@ -209,11 +209,10 @@ class _Branch:
         there, _ = self.statics.balanced(
             Places(at.inputs, way.states[:, 1:], way.turns[:, 1:], time)
         )
-        if not there.times.size or not np.allclose(
-            there.states, at.states, rtol=0.0, atol=tolerances.REST_SMALL
-        ):
+        if not there.times.size:
             return None
-        return there.place(0)
+        is_same = np.abs(there.states - at.states).max() <= tolerances.REST_SMALL
+        return there.place(0) if is_same else None
 
     def _searched(self, row: int, start: Place) -> Place | None:
         """The equilibrium to which a search leads from a place at a row."""

@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from balances.test_balances import BODY, FLYWHEEL, LOADS, SHAKING, WORK
+from streams.written import written_alike
 from sweep.cut import cut
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
-from mechkin_cli.__main__ import main
-from mechkin_cli.cli import long_runs
 from mechkin_cli.tables import Columns, Words
 
 TURNS = "motion: {{inputs: {{A.theta: {{from: {first}, to: {last}, count: {count}, {rate}}}}}}}\n"
@@ -138,23 +137,9 @@ def test_the_command_writes_what_it_does_of_a_whole_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     count = tolerances.LONG_RUN + 31
-    path = tmp_path / "f.yaml"
-    path.write_text(turns(0, 360 * 64, count) + ALL.split("  - {name: f")[0] + DENSE)
-    printed, files = [], []
-    for name in ("streamed", "whole"):
-        if name == "whole":
-            monkeypatch.setattr(long_runs, "streamed_runs", lambda *_: [])
-        words = ["mechkin", "analyze", str(path), "--out", str(tmp_path / name), "--format", "csv"]
-        monkeypatch.setattr("sys.argv", words)
-        with pytest.raises(SystemExit) as ended:
-            main()
-        assert not ended.value.code
-        printed.append(capsys.readouterr().out.replace(str(tmp_path / name), "out"))
-        own = sorted((tmp_path / name).iterdir())
-        files.append({file.name: file.read_bytes() for file in own if file.suffix == ".csv"})
-    assert printed[0] == printed[1]
-    assert files[0] == files[1]
-    assert {"work.csv", "h.csv", "inner.csv", "inner_unknowns.csv"} <= files[0].keys()
+    text = turns(0, 360 * 64, count) + ALL.split("  - {name: f")[0] + DENSE
+    found = written_alike(tmp_path, text, monkeypatch, capsys)
+    assert {"work.csv", "h.csv", "inner.csv", "inner_unknowns.csv"} <= found
 
 
 def test_a_flywheel_of_too_many_rows_is_refused() -> None:

@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from derived.test_energy_ledger import BLOCK, NAMES, SLIDER
+from streams.written import written_alike
 from sweep.cut import cut
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
-from mechkin_cli.__main__ import main
-from mechkin_cli.cli import long_runs
 
 BALL = SLIDER.replace("C: {{type: R,", "C: {{type: S,").replace(
     ", axis: [0, 0, 1]}}\n  D", "}}\n  D"
@@ -93,22 +92,7 @@ def test_the_command_writes_what_it_does_of_a_whole_run(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     count = tolerances.LONG_RUN + 3
-    path = tmp_path / "f.yaml"
     text = (SLIDER if name == "a slider" else BLOCK).format(count=count)
     columns = "time, row.work, row.dissipated, row.energy_error"
-    path.write_text(text + f"tables: [{{name: t, columns: [{columns}], summary: [max, mean]}}]\n")
-    printed, files = [], []
-    for way in ("streamed", "whole"):
-        if way == "whole":
-            monkeypatch.setattr(long_runs, "streamed_runs", lambda *_: [])
-        words = ["mechkin", "analyze", str(path), "--out", str(tmp_path / way), "--format", "csv"]
-        monkeypatch.setattr("sys.argv", words)
-        with pytest.raises(SystemExit) as ended:
-            main()
-        assert not ended.value.code
-        printed.append(capsys.readouterr().out.replace(str(tmp_path / way), "out"))
-        own = sorted((tmp_path / way).iterdir())
-        files.append({file.name: file.read_bytes() for file in own if file.suffix == ".csv"})
-    assert printed[0] == printed[1]
-    assert files[0] == files[1]
-    assert len(files[0]) == 3
+    text += f"tables: [{{name: t, columns: [{columns}], summary: [max, mean]}}]\n"
+    assert len(written_alike(tmp_path, text, monkeypatch, capsys)) == 3
