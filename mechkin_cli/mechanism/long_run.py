@@ -88,7 +88,9 @@ class LongRun:
 
     def at(self, rows: NDArray[np.int64]) -> MotionInputs:
         """The motion in some rows, by their numbers, which rise."""
-        return self._build(rows)._replace(leader=self.leader, grid=self._lines_of(rows))
+        # what moves in the run may rest in some of its rows
+        found = self._build(rows)
+        return found._replace(leader=self.leader, unrated=self.unrated, grid=self._lines_of(rows))
 
     def _lines_of(self, rows: NDArray[np.int64]) -> tuple[int, int] | None:
         """The grid of some rows that are whole lines of one; else None."""

@@ -114,16 +114,11 @@ class _Lines:
     def follow(self, start: AssemblyStart) -> SweepRows:
         """All rows, from the assembly at its row on."""
         assert start.state is not None
-        self._along(start.row, start.state, None)
+        self._along(start.row, start.state, start.turn)
         first = start.row // self.width
-        for step, lines in ((1, range(first + 1, self.lines)), (-1, range(first - 1, -1, -1))):
-            row = start.row
-            for line in lines:
-                found = self._onto(line, row, step)
-                if found is None:
-                    self._explain(line, step)
-                    break
-                row = found
+        onward = self._from_line(start.row, range(first + 1, self.lines), 1)
+        back = self._from_line(start.row, range(first - 1, -1, -1), -1)
+        self.rows.arrivals = back, onward
         from mechkin_cli.sweep.branch_end import without_repeats
 
         span = self.rows.span
@@ -132,6 +127,17 @@ class _Lines:
             ends = [*without_repeats(ends)]
         self.rows.diagnostics = [*ends]
         return self.rows
+
+    def _from_line(self, row: int, lines: range, step: int) -> int:
+        """Follows lines, one from the other, the first from that of a row; the row at which the
+        last one that is reached was come to."""
+        for line in lines:
+            found = self._onto(line, row, step)
+            if found is None:
+                self._explain(line, step)
+                break
+            row = found
+        return row
 
     def _along(self, row: int, state: Floats, turn: Floats | None) -> None:
         """Follows the line of a row from there both ways."""

@@ -196,6 +196,11 @@ class _Walk:
     def _between(self, border: _Border, end: int) -> tuple[Session, AssemblyStart]:
         """The rows from a border to another row, and the border as their first assembly."""
         first, last = sorted((border.row, end))
+        return self._from(border, first, last)
+
+    def _from(self, border: _Border, first: int, last: int) -> tuple[Session, AssemblyStart]:
+        """Rows from one to another, both included, and a border among them as their first
+        assembly."""
         start = replace(
             self.start,
             state=border.state,
@@ -259,7 +264,7 @@ class _WalkOfLines(_Walk):
             result = self.judge(part, begin, None)
             yield Part(result, slice(done + 1 - line * self.width, result.rows))
             done = (end + 1) * self.width - 1
-            found = self._border_in(result, line, end, border.row)
+            found = self._border_in(result, line, end)
             if found is None:
                 yield from self._empty(done + 1, self.last, Status(int(result.status[-1])))
                 return
@@ -282,7 +287,7 @@ class _WalkOfLines(_Walk):
             near = rows.reached[: self.width]
             if first == 0 or not near.any():
                 break
-            place = self._nearest(near, border.row)
+            place = self._arrival(near, rows.arrivals[0])
             turn = np.ascontiguousarray(rows.turns[:, place])
             border = _Border(first * self.width + place, closed(part, rows, place), turn)
         off = turns_before(part, rows, int(np.argmax(rows.reached)))
@@ -295,25 +300,16 @@ class _WalkOfLines(_Walk):
 
     def _of_lines(self, border: _Border, first: int, last: int) -> tuple[Session, AssemblyStart]:
         """Lines from one to another, both included, and the border as their first assembly."""
-        begin, end = first * self.width, (last + 1) * self.width - 1
-        start = replace(
-            self.start,
-            state=border.state,
-            row=border.row - begin,
-            turn=border.turn,
-            signs=border.signs,
-            diagnostics=[],
-        )
-        return self.session.part(begin, end), start
+        return self._from(border, first * self.width, (last + 1) * self.width - 1)
 
-    def _border_in(self, result: Result, first: int, last: int, near: int) -> _Border | None:
-        """The row of the last line of a part that is nearest to the column of a row; None where
-        none is reached."""
+    def _border_in(self, result: Result, first: int, last: int) -> _Border | None:
+        """The row of the last line of a part from which the next one goes on; None where none is
+        reached."""
         rows, begin = result.row_states, (last - first) * self.width
         reached = rows.reached[begin:]
         if not reached.any():
             return None
-        place = begin + self._nearest(reached, near)
+        place = begin + self._arrival(reached, rows.arrivals[1])
         state, turn = rows.states[:, place].copy(), rows.turns[:, place].copy()
         signs = self._signs_of_line(result, last - first)
         return _Border(first * self.width + place, state, turn, signs)
@@ -324,8 +320,8 @@ class _WalkOfLines(_Walk):
         reached = result.row_states.reached[begin : begin + self.width]
         return _signs(result, begin + int(np.argmax(reached)))
 
-    def _nearest(self, reached: NDArray[np.bool_], row: int) -> int:
-        """The place in a line that is reached and nearest to the column of a row."""
+    def _arrival(self, reached: NDArray[np.bool_], row: int) -> int:
+        """The place in a line of the row at which it was come to, or what is reached next to it."""
         places = np.flatnonzero(reached)
         return int(places[np.argmin(np.abs(places - row % self.width))])
 

@@ -64,6 +64,8 @@ class SweepRows:
         dead_centres: rows that stand at one, twice where either of two branches may be meant.
         signs: (rows,) of the quaternion of each spherical joint, as far as it was read.
         signs_before: those of the first row where it goes on from others.
+        arrivals: of a grid the rows at which the lines on either side of the start were come to
+            last: those from which the lines before the first and behind the last one go on.
     """
 
     states: Floats
@@ -80,6 +82,7 @@ class SweepRows:
     dead_centres: list[PlacesBefore] = field(default_factory=list)
     signs: dict[str, Floats] = field(default_factory=dict)
     signs_before: Mapping[str, float] = field(default_factory=dict)
+    arrivals: tuple[int, int] = (0, 0)
 
     @classmethod
     def without_guesses(

@@ -15,7 +15,16 @@ GRID = """motion:
     A.theta: {{from: {slow[0]}, to: {slow[1]}, count: {lines}, rate: 1 rad/s}}
     E.theta: {{from: {fast[0]}, to: {fast[1]}, count: {width}, rate: -2 rad/s}}
 """
-NAMES = ["A.theta", "E.theta", "C.theta", "p.position.x", "p.velocity.y", "A.effort", "row.status"]
+NAMES = [
+    "A.theta",
+    "E.theta",
+    "B.theta",
+    "C.theta",
+    "p.position.x",
+    "p.velocity.y",
+    "A.effort",
+    "row.status",
+]
 
 
 def grid(slow: tuple, fast: tuple, lines: int, width: int) -> str:
@@ -28,6 +37,7 @@ TEXTS = {
     "many turns": grid((0, 720), (0, 720), 13, 13),
     "lost at the ends": grid((-150, 150), (-90, 90), 15, 9),
     "wide lines": grid((-20, 30), (40, -20), 4, 31),
+    "past half a turn of what is no input": grid((-140, -2), (49, 104), 7, 4),
 }
 
 
