@@ -105,7 +105,7 @@ def with_labels(command: AnalyzeCommand, model: Model) -> AnalyzeCommand:
         if text.count('"') % 2 and text not in known:
             raise UsageError(f"--columns: {text[:LONGEST_NAME]} has a quote that does not end")
         asked += [cell if cell in known else cell.strip() for cell in cells]
-    if not asked:
+    if not any(asked):
         first = ", ".join([*known][:MOST_LABELS])
         raise UsageError(f"--columns: no label is given; columns are {first}")
     for label in asked:

@@ -137,7 +137,11 @@ def test_a_run_in_another_format_removes_the_files_of_the_first(mechkin, write, 
 
 @pytest.mark.parametrize(
     ("columns", "words"),
-    [("", "no label is given; columns are "), ('"x', '"x has a quote that does not end')],
+    [
+        ("", "no label is given; columns are "),
+        (" , ", "no label is given"),
+        ('"x', '"x has a quote that does not end'),
+    ],
 )
 def test_columns_that_name_nothing_are_refused(mechkin, columns, words) -> None:
     run = mechkin("analyze", RCSR, "--columns", columns)

@@ -153,14 +153,13 @@ def test_most_of_the_runs_have_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def are_near(parts: mk.Analysis, once: mk.Analysis, names: Sequence[str]) -> None:
-    """A run whose parts are joined is that in one part up to the rounding of its states."""
+    """A run whose parts are joined is that in one part up to the rounding of its states, and to the
+    sign of quaternions, which is either where they begin at half a turn."""
     for name in names:
         values, expected = np.asarray(parts[name]), np.asarray(once[name])
         if values.dtype.kind != "f":
             assert values.tolist() == expected.tolist(), name
-        elif (
-            name not in NOISE and ".q" not in name
-        ):  # of either sign where it begins at half a turn
+        elif name not in NOISE and ".q" not in name:
             assert np.array_equal(np.isnan(values), np.isnan(expected)), name
             size = np.abs(expected[np.isfinite(expected)]).max(initial=0.0)
             off = np.abs(np.where(values == expected, 0.0, values - expected))
