@@ -12,7 +12,6 @@ beside the mechanisms, in `mechanisms/*/*/published/*.csv`.
 from __future__ import annotations
 
 import csv
-import time
 from functools import cache
 from pathlib import Path
 
@@ -45,22 +44,6 @@ def committed(stem: str, table: str) -> list[dict[str, str]]:
         newline="", encoding="utf-8"
     ) as file:
         return list(csv.DictReader(file))
-
-
-@cache
-def reading_seconds() -> float:
-    """Processor time of reading and building the largest kept file here, once all is loaded: what
-    limits on the time of other files are in times of."""
-    import mechkin_cli as mk  # here, as the oracle's side of the tests does without the package
-
-    text = max((path.read_text(encoding="utf-8") for path in FILE_OF.values()), key=len)
-
-    def once() -> float:
-        start = time.process_time()
-        mk.loads(text)
-        return time.process_time() - start
-
-    return min(once() for _ in range(4))
 
 
 def published_names() -> list[str]:

@@ -1,28 +1,33 @@
 """Files that ask for more than a machine has end in a message, and soon."""
 
-import time
 import tracemalloc
 
 import pytest
 from building.sound import SOUND
-from references import FILE_OF, reading_seconds
+from references import FILE_OF
+from work import calls
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.tolerances import MOST_EQUATIONS, MOST_NUMBERS
 
-MOST_TIMES = 250.0
-"""Processor time in times of the largest kept file: far above what each takes (40 at most), far
-below what an exponential search or a quadratic one would."""
+MOST_CALLS = 40_000_000
+"""Of functions: above what each takes (10 million at most), far below what an exponential search or
+a quadratic one would."""
 
 
 def errors(text: str) -> tuple[Diagnostic, ...]:
-    most = MOST_TIMES * reading_seconds()
-    start = time.process_time()
-    with pytest.raises(mk.InvalidFile) as caught:
-        mk.loads(text, "f.yaml")
-    assert time.process_time() - start < most
-    return caught.value.diagnostics
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+    def answer() -> None:
+        nonlocal diagnostics
+        with pytest.raises(mk.InvalidFile) as caught:
+            mk.loads(text, "f.yaml")
+        diagnostics = caught.value.diagnostics
+
+    count = calls(answer)
+    assert count < MOST_CALLS
+    return diagnostics
 
 
 def loops(count: int) -> str:

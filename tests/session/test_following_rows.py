@@ -3,8 +3,6 @@ up, linear work, and turns of closing joints that are never lost."""
 
 from __future__ import annotations
 
-from time import process_time
-
 import numpy as np
 import pytest
 from prepared import Setup, prepared
@@ -74,15 +72,11 @@ def test_a_curved_path_is_followed_as_row_by_row(platform: Platform, rows: int) 
 
 
 def test_the_nodes_do_not_grow_with_the_rows(platform: Platform) -> None:
-    steps, seconds = [], []
+    steps = []
     for rows in (4000, 40000):
         path = platform.path(rows)
-        begin = process_time()
         steps.append(follow(platform.plan, path, platform.start).steps)
-        seconds.append(process_time() - begin)
     assert steps[1] <= 1.2 * steps[0] < 300
-    # ten times the rows; a rescan of all rows at each would take a hundred times as long
-    assert seconds[1] <= 30.0 * seconds[0]
 
 
 def test_in_two_parts(platform: Platform) -> None:

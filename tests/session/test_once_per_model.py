@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 from mechanisms.runs import NAMES
 from references import FILE_OF
+from work import calls
 
 import mechkin_cli as mk
 from benchmarks.scenes import texts
@@ -18,22 +16,6 @@ MOST_CALLS = 450
 (Stewart with forces)."""
 
 
-def calls_of(run: Callable[[], object]) -> int:
-    """How many Python functions a run calls."""
-    count = 0
-
-    def counted(frame: object, event: str, argument: object) -> None:
-        nonlocal count
-        count += event == "call"
-
-    sys.setprofile(counted)
-    try:
-        run()
-    finally:
-        sys.setprofile(None)
-    return count
-
-
 @pytest.mark.parametrize("name", ["RCSR", "7R", "Stewart", "platform on laws"])
 def test_a_second_run_only_runs(name: str) -> None:
     model = mk.loads(texts()[name]())
@@ -41,9 +23,9 @@ def test_a_second_run_only_runs(name: str) -> None:
     forces = [*names, *(n for n in model.quantities if n.endswith((".force", ".effort")))]
     for asked in (names, forces):
         model.analyze(asked, tables=[])
-    assert calls_of(lambda: model.analyze(names, tables=[])) <= MOST_CALLS
+    assert calls(lambda: model.analyze(names, tables=[]), of_c=False) <= MOST_CALLS
     # how many quantities are read must not count; 40 are some list comprehensions more
-    assert calls_of(lambda: model.analyze(forces, tables=[])) <= 2 * MOST_CALLS
+    assert calls(lambda: model.analyze(forces, tables=[]), of_c=False) <= 2 * MOST_CALLS
 
 
 def test_rows_and_tables_cost_no_calls() -> None:
@@ -51,7 +33,7 @@ def test_rows_and_tables_cost_no_calls() -> None:
     long = text.replace("step: 2,", "step: 0.02,")
     assert long != text
     few, many = mk.loads(text), mk.loads(long)
-    found = [calls_of(model.analyze) for model in (few, many, few, many)]
+    found = [calls(model.analyze, of_c=False) for model in (few, many, few, many)]
     assert found[2] == found[3] <= MOST_CALLS
     assert found[2] < found[0] / 5
 

@@ -7,15 +7,14 @@ turns as one. Work is counted in calls, which no other load on the machine chang
 
 from __future__ import annotations
 
-import cProfile
 import math
-import pstats
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 import yaml
 from structure.networks import Network, parallelograms, scissors, spatial_train, windows
+from work import calls
 
 import mechkin_cli as mk
 from mechkin_cli.mobility import drawn_faults
@@ -32,15 +31,6 @@ CHAINS = {
 
 def text_of(network: Network, *, plane: bool) -> str:
     return network.plane_text if plane else network.text
-
-
-def calls(question: Callable[[], object]) -> int:
-    """How many functions are called, those of Python and of C."""
-    profile = cProfile.Profile()
-    profile.enable()
-    question()
-    profile.disable()
-    return int(pstats.Stats(profile).total_calls)  # type: ignore[attr-defined]
 
 
 def more_of(counts: list[int]) -> float:
