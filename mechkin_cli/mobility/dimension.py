@@ -174,6 +174,56 @@ def _apart(one: AssemblyComponent, other: AssemblyComponent) -> float:
     return float(np.linalg.norm(off, 2)) if off.size else 0.0
 
 
+def relative_rates(part: LoopPart, component: AssemblyComponent) -> Floats:
+    """Rates (columns, dimension) along a component, each column in a unit of its own, so that what
+    moves little beside the rest, as the far end of a long row of loops, is told from what rests.
+
+    A unit is the rate itself where that is clear; a loop in which none is clear has the unit of
+    those next to it. With new units more rates become clear, until no others do.
+    """
+    rates = component.tangents
+    if component.doubt > tolerances.RANK_ZERO or not component.dimension:
+        return rates
+    clear = np.abs(rates).max(axis=1) > tolerances.RANK_ZERO
+    if clear.all():
+        return rates
+    passing = part.loops.passing[part.cuts][:, part.columns]
+    beside = passing.astype(np.float64) @ passing.T > 0.0
+    (jacobian,) = part.closing(component.state[None])[1]
+    with np.errstate(divide="ignore"):
+        entries = np.log2(np.abs(jacobian))  # powers of two: units may lie beyond all floats
+    units, known = np.zeros(part.count), np.zeros_like(clear)
+    while np.any(clear > known) and not clear.all():
+        known |= clear
+        units[clear] += np.log2(np.abs(rates[clear]).max(axis=1))
+        units = _spread(units, known, passing, beside)
+        rows = (entries + units).max(axis=1, initial=-np.inf)
+        told = np.isfinite(rows)
+        even = np.zeros_like(jacobian)
+        even[told] = np.sign(jacobian[told]) * np.exp2(entries[told] + units - rows[told, None])
+        again = part.rank(even, tolerances.MOBILITY_RANK_REACHED).motions
+        if again.shape[1] != component.dimension:
+            break
+        rates = again
+        clear = np.abs(rates).max(axis=1) > tolerances.RANK_ZERO
+    return rates
+
+
+def _spread(
+    units: Floats, known: NDArray[np.bool_], passing: NDArray[np.bool_], beside: NDArray[np.bool_]
+) -> Floats:
+    """Units (columns,) of which some are known: the others have that of the largest known one of a
+    loop that passes them, loops without any that of those next to them."""
+    every = np.where(passing & known, units, -np.inf).max(axis=1)
+    while np.any(np.isneginf(every)):
+        nearest = np.where(beside & np.isfinite(every), every, np.inf).min(axis=1)
+        new = np.isneginf(every) & np.isfinite(nearest)
+        if not new.any():
+            return units
+        every[new] = nearest[new]
+    return np.where(known, units, np.where(passing, every[:, None], np.inf).min(axis=0))
+
+
 Move = tuple[float, float]
 """A move by its largest step (rad, parts of the size), and how far loops that are closed after it
 may be open."""

@@ -22,7 +22,7 @@ from mechkin_cli.idle import PLACES, LinkMotion, RigidGroup, held_groups
 from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import Joint, LockedFreedom, Mechanism, Problem, Vector
 from mechkin_cli.mobility.configurations import Body, Configuration, LoopPart, home
-from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
+from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of, relative_rates
 from mechkin_cli.mobility.opened import rank_of
 from mechkin_cli.record import NamedTuple
 
@@ -105,14 +105,22 @@ class Motions:
     @cached_property
     def tangents(self) -> Floats:
         """Motions (freedoms, mobility) of the largest component at the general configuration."""
+        return self._beside([freedom.components[0].tangents for _, freedom in self.freedoms])
+
+    @cached_property
+    def rates(self) -> Floats:
+        """The same with each freedom in a unit of its own."""
+        return self._beside([relative_rates(part, f.components[0]) for part, f in self.freedoms])
+
+    def _beside(self, of_parts: Sequence[Floats]) -> Floats:
+        """Motions of the whole from those of its parts and what moves alone."""
         motions = np.zeros((self.body.count, self.mobility))
         free = self.body.free
         motions[free, np.arange(free.size)] = 1.0
         column = free.size
-        for part, freedom in self.freedoms:
-            tangents = freedom.components[0].tangents
-            motions[part.columns, column : column + tangents.shape[1]] = tangents
-            column += tangents.shape[1]
+        for (part, _), own in zip(self.freedoms, of_parts, strict=True):
+            motions[part.columns, column : column + own.shape[1]] = own
+            column += own.shape[1]
         return motions
 
     @cached_property
@@ -128,7 +136,7 @@ class Motions:
         moving[self.body.free] = True
         for part, freedom in self.freedoms:
             for component in freedom.every:
-                rates = np.abs(component.tangents).max(axis=1, initial=0.0)
+                rates = np.abs(relative_rates(part, component)).max(axis=1, initial=0.0)
                 moving[part.columns] |= rates > max(component.doubt, tolerances.RANK_ZERO)
         return self.body.coordinates(~moving)
 

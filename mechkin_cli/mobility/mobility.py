@@ -64,7 +64,7 @@ def input_notes(problem: Problem, motions: Motions, idle: int) -> list[Diagnosti
     driven = problem.motion.driven
     if not driven:
         return []
-    rates = motions.tangents[[motions.body.column(*each) for each in driven]]
+    rates = motions.rates[[motions.body.column(*each) for each in driven]]
     doubt = max(motions.doubt, tolerances.RANK_ZERO)
     notes = []
     names = [f"{name}.{coordinate}" for name, coordinate in driven]
@@ -85,7 +85,7 @@ def input_notes(problem: Problem, motions: Motions, idle: int) -> list[Diagnosti
                 hint="drive fewer coordinates",
             )
         )
-    left = motions.tangents @ right[rank:].T
+    left = motions.rates @ right[rank:].T
     moving = motions.body.coordinates(np.abs(left).max(axis=1, initial=0.0) > doubt)
     return [*notes, *undriven_notes(motions.mobility, idle, rank, moving)]
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from structure.networks import Network, parallelograms, shuffled, spatial_train, windows
+from structure.networks import Network, parallelograms, shuffled, spatial_train, turn, windows
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
@@ -99,3 +99,37 @@ def test_mobility_of_a_long_row(count: int) -> None:
         assert found.mobility == found.count == freedom
         assert found.redundant == ()
         assert found.idle == ()
+
+
+def with_triangles(network: Network, every: int) -> tuple[Network, set[str]]:
+    """Bars that stand as a triangle on rockers at equal distances, and their joints."""
+    links, joints, still = [*network.links], dict(network.joints), set()
+    for k in range(0, network.loops, every):
+        links += [f"p{k}", f"q{k}"]
+        joints[f"P{k}"] = turn(f"c{k}", f"p{k}", (4 * k + 0.1, 0.6, 0))
+        joints[f"Q{k}"] = turn(f"p{k}", f"q{k}", (4 * k + 0.7, 0.8, 0))
+        joints[f"R{k}"] = turn(f"q{k}", f"c{k}", (4 * k + 0.2, 0.2, 0))
+        still |= {f"P{k}.theta", f"Q{k}.theta", f"R{k}.theta"}
+    return network._replace(links=links, joints=joints), still
+
+
+@pytest.mark.parametrize(("count", "plane"), [(20, False), (20, True), (60, True), (150, True)])
+def test_what_never_moves_is_told_from_what_hardly_moves(count: int, plane: bool) -> None:
+    """Rockers a hundred windows on move by 1e-14 of the first; triangles on them not at all."""
+    network, still = with_triangles(windows(count), 9)
+    for one in (network, shuffled(network, 1, renamed=False)):
+        assert set(mk.loads(undriven(one, plane=plane)).mobility().fixed) == still
+    assert mk.loads(undriven(windows(count), plane=plane)).mobility().fixed == ()
+
+
+def test_inputs_that_hardly_move_are_neither_locked_nor_independent() -> None:
+    first, last = "O0.theta", "O90.theta"
+    driven = windows(90)._replace(inputs=[last])
+    assert mk.loads(driven.plane_text).mobility().diagnostics == ()
+    (note,) = mk.loads(driven._replace(inputs=[first, last]).plane_text).mobility().diagnostics
+    assert str(note).startswith("error: the inputs O0.theta, O90.theta are not independent: 2 in")
+    network, _ = with_triangles(driven, 9)
+    locked = network._replace(inputs=["P81.theta"])
+    notes = mk.loads(locked.plane_text).mobility().diagnostics
+    assert [each.code for each in notes] == ["input-locked", "undriven-freedom"]
+    assert f"candidates: {first}, " in notes[1].message
