@@ -46,13 +46,7 @@ def threads_for(columns: Columns | Iterable[TableColumn], threads: int = 0) -> i
         return min(threads, MOST_TEXT_THREADS)
     listed = columns.columns if isinstance(columns, Columns) else tuple(columns)
     cells = sum(column.rows for column in listed)
-    return max(1, min(_processors(), cells // CELLS_PER_THREAD, MOST_TEXT_THREADS))
-
-
-def _processors() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    return max(1, min(_kernel.available_processors(), cells // CELLS_PER_THREAD, MOST_TEXT_THREADS))
 
 
 class CsvStyle(NamedTuple):
