@@ -47,7 +47,7 @@ from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    pass
+    from mechkin_cli.show import Floats
 
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
@@ -164,20 +164,26 @@ def precise_response(
         problem = build_problem(fields, file, motion=base.motion, moving=base.responses)
         recorded = replace(problem.responses[name], held=())
         path = (response.section, name)
-        over = ExactRows(recorder, response.rows)
         if response.search is None:
-            moments = exact_moments(fields, (*path, "time"), file.responses[name].time, over)
             motion = start_motion(fields, recorded, recorder)
         else:
-            section = file.equilibria[name]
-            moments = exact_moment(fields, (*path, "time"), section.time, over)
-            motion = start_motion(fields, recorded, recorder, section.driven)
-        both = [fields.units.to_si(moments, TIME), moments]
+            motion = start_motion(fields, recorded, recorder, file.equilibria[name].driven)
     _refuse_errors(fields)
     problem = replace(response_problem(problem, recorded, first.motion), hold_idle=first.hold_idle)
     problem = replace(problem, held=_held(first, problem, recorder))
-    in_si, written = over.double_doubles(both)
-    return Precise(recorder, settled(problem), motion, first, (in_si, written))
+
+    def moments() -> Floats:
+        over = ExactRows(recorder, response.rows)
+        with exact_numbers(recorder):
+            if response.search is None:
+                section = file.responses[name].time
+                written = exact_moments(fields, (*path, "time"), section, over)
+            else:
+                written = exact_moment(fields, (*path, "time"), file.equilibria[name].time, over)
+            both = [fields.units.to_si(written, TIME), written]
+        return over.double_doubles(both)
+
+    return Precise(recorder, settled(problem), motion, first, moments)
 
 
 def record(built: Built, names: Sequence[str], *, motion: bool = True) -> tuple[Recorder, Problem]:

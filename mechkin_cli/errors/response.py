@@ -188,7 +188,6 @@ class ResponseRows(FreeRows):
         """The moments of the rows, nan for a stop's, which no text has; and the locked idle
         freedoms."""
         moments, count = self.precise.moments, self.result.rows
-        assert moments is not None
         in_si, written = np.full((2, 2, count), np.nan)
         for own, numbers in zip((in_si, written), moments, strict=True):
             own[:, : self._requested] = numbers[:, : self._requested]

@@ -44,9 +44,8 @@ class EquilibriumRows(FreeRows):
     @cached_property
     def of_text(self) -> PreciseInputs:
         """The moment of the rows, and what is held."""
-        moments = self.precise.moments
-        assert moments is not None
-        in_si, written = (np.repeat(one[:, :1], self.result.rows, axis=1) for one in moments)
+        moments = self.precise.moments[:, :, :1]
+        in_si, written = np.repeat(moments, self.result.rows, axis=2)
         return self.of_moments(in_si, written)
 
     @cached_property

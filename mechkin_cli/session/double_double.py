@@ -211,8 +211,8 @@ class Precise:
         problem: the file's problem on that recorder.
         motion: the file's motion over its rows.
         base: the same problem in doubles, of which the sessions are.
-        moments: of the rows of a response, whose first moment `problem` is, in double-double
-            (2, rows): in s, and in the file's unit.
+        moments: gives those of the rows of a response, whose first moment `problem` is, in
+            double-double (2, 2, rows): in s, and in the file's unit.
     """
 
     def __init__(
@@ -221,16 +221,22 @@ class Precise:
         problem: Problem,
         motion: ExactMotion,
         base: Problem,
-        moments: tuple[Floats, Floats] | None = None,
+        moments: Callable[[], Floats] | None = None,
     ) -> None:
         self.recorder = recorder
         self.problem = problem
         self.motion = motion
         self.base = base
-        self.moments = moments
+        self._moments = moments
         self._layouts: dict[int, tuple[InDoubles, Layout]] = {}
         self._inputs: dict[int, tuple[Problem, PreciseInputs]] = {}
         self._numbers: dict[int, tuple[InDoubles, Floats]] = {}
+
+    @cached_property
+    def moments(self) -> Floats:
+        """Those of the rows of a response (2, 2, rows); a start alone needs none."""
+        assert self._moments is not None
+        return self._moments()
 
     def constants(self, session: InDoubles) -> Floats:
         """The constants of the session's plan in double-double (constants, 2), in the order in
