@@ -8,6 +8,7 @@ its last row alone: where they are wanted before, the motion is gone through twi
 
 from __future__ import annotations
 
+import atexit
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from queue import SimpleQueue
@@ -19,9 +20,17 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import Span, read_for
 from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.response.impacts import stopped_at_start
+from mechkin_cli.response.jumps import BendsPassed, at_jump, before_jump
 from mechkin_cli.response.report import motion_of, under_way
-from mechkin_cli.response.rows import Prepared, RunEnd, block_of, run_end, why_held
-from mechkin_cli.response.runs import integrated, integrated_rows, prepare, read
+from mechkin_cli.response.rows import Prepared, RunEnd, block_of, limits_of, run_end, why_held
+from mechkin_cli.response.runs import (
+    ended_at_jumps,
+    integrated,
+    integrated_rows,
+    prepare,
+    read,
+)
 from mechkin_cli.sweep import Part
 
 if TYPE_CHECKING:
@@ -55,7 +64,7 @@ class ResponseBlocks:
         packing: Packing,
         session: Session | None = None,
     ) -> None:
-        self._one: Prepared = prepare(problem, response, packing, session)
+        self._given: Prepared = prepare(problem, response, packing, session)
         self._packing = packing
         self.names = tuple(dict.fromkeys(quantities))
         self._taken: Energies | None = None  # of the rows that have been taken so far
@@ -63,12 +72,12 @@ class ResponseBlocks:
     @property
     def session(self) -> Session:
         """Of the free motion; its motion is the first moment."""
-        return self._one.free
+        return self._given.free
 
     @property
     def start(self) -> AssemblyStart:
         """The first assembly."""
-        return self._one.start
+        return self._given.start
 
     @property
     def run_rows(self) -> int:
@@ -79,18 +88,18 @@ class ResponseBlocks:
     @property
     def driven(self) -> tuple[str, ...]:
         """The coordinates that go by laws of time."""
-        return tuple(item.name for item in self._one.response.driven)
+        return tuple(item.name for item in self._given.response.driven)
 
     @property
     def asked(self) -> list[Wanted]:
         """The quantities asked for."""
-        known = self._one.free.problem.quantities()
+        known = self._given.free.problem.quantities()
         return [known[name] for name in read_for(self.names, known)]
 
     @cached_property
     def block_rows(self) -> int:
         """Rows of a block: as many as take about the memory of a part of a sweep."""
-        plan = self._one.free.plan
+        plan = self._given.free.plan
         numbers = plan.states + plan.charts * (plan.columns + 2)
         rows = tolerances.PART_ROWS
         while rows > tolerances.LEAST_PART_ROWS and rows * numbers > tolerances.PART_NUMBERS:
@@ -100,14 +109,14 @@ class ResponseBlocks:
     @property
     def in_blocks(self) -> bool:
         """Whether the rows are not held: there are many, and the motion goes on in one way."""
-        one = self._one
+        one = self._given
         is_long = one.response.rows > self.block_rows
         return is_long and one.begun is not None and not why_held(one)
 
     def parts(self) -> Iterator[Part]:
         """The rows in order, block by block; one block, where they are held."""
         if not self.in_blocks:
-            (result,) = integrated([self._one], self._packing)
+            (result,) = integrated([self._given], self._packing)
             read(result, self.names)
             self._take(result)
             yield Part(result, slice(0, result.rows))
@@ -115,7 +124,7 @@ class ResponseBlocks:
         rows, done, self._taken = self.run_rows, 0, None
         if _ENERGY_ERROR in self.names:
             _ = self._whole  # before another motion is under way
-        for motion in self._marched():
+        for motion in self._marched(self._one):
             end = self._end_at(motion)
             count = min(motion.states.shape[1], rows - done)
             if count > 0:
@@ -127,6 +136,20 @@ class ResponseBlocks:
             count = min(self.block_rows, rows - done)
             yield self._part(nothing, end, Span(done, count, rows))
             done += count
+
+    @cached_property
+    def _one(self) -> Prepared:
+        """The response with an end at each jump of a slope; whether its motion comes to one is told
+        by the motion without."""
+        one = self._given
+        passed = BendsPassed(one.free.problem)
+        if not passed.bends or not self.in_blocks:
+            return one
+        for rows in self._ahead(one):
+            end, result = rows
+            if result is not None:
+                passed.add(result)
+        return ended_at_jumps(one, passed, end.report)
 
     def _end_at(self, motion: MotionRows) -> RunEnd:
         """How the motion ends, as some of its rows tell: that they are reached, and the last of
@@ -155,17 +178,23 @@ class ResponseBlocks:
     def _whole(self) -> _Whole:
         """How the motion ends, and its energies."""
         energies: Energies | None = None
-        every, done = self._one.response.rows, 0
-        for motion in self._marched():
-            report = motion.report
-            end = run_end(self._one, report, motion.count if report.is_over else every)
-            count = min(motion.states.shape[1], end.rows - done)
-            if count > 0:
-                result = block_of(self._one, motion, end, Span(done, count, every))
+        for rows in self._ahead(self._one):
+            end, result = rows
+            if result is not None:
                 read(result, ())
                 energies = result.energies_with(energies)
+        return _Whole(end, energies and energies.between(end.report, self._one.free.layout.length))
+
+    def _ahead(self, one: Prepared) -> Iterator[tuple[RunEnd, ResponseResult | None]]:
+        """A motion gone through to tell what is known behind its last row: its end, as far as its
+        rows so far tell, and the last of these, before anything is read; None without any."""
+        every, done = one.response.rows, 0
+        for motion in self._marched(one):
+            report = motion.report
+            end = run_end(one, report, motion.count if report.is_over else every)
+            count = min(motion.states.shape[1], end.rows - done)
+            yield end, block_of(one, motion, end, Span(done, count, every)) if count > 0 else None
             done += count
-        return _Whole(end, energies and energies.between(report, self._one.free.layout.length))
 
     @property
     def energy_error(self) -> float:
@@ -174,14 +203,26 @@ class ResponseBlocks:
         error = None if found is None else found.error(np.array([found.missing]))
         return float("nan") if error is None else float(error[0])
 
-    def _marched(self) -> Iterator[MotionRows]:
-        """The motion in blocks of rows, as they are reached; the report of the last one is that of
+    def _marched(self, one: Prepared) -> Iterator[MotionRows]:
+        """A motion in blocks of rows, as they are reached; the report of the last one is that of
         the motion, and the others are under way."""
-        march = _March(self._one, self._packing, self.block_rows)
+        march = _March(one, self._packing, self.block_rows)
         try:
-            yield from march
+            for motion in march:
+                if not motion.report.first and limits_of(one.response):
+                    motion = self._from_limit(one, motion)
+                ended = at_jump(one.chosen, one.response, motion)
+                yield before_jump(one.response, ended)
+                if motion.report.is_over:
+                    return
         finally:
             march.leave()
+
+    def _from_limit(self, one: Prepared, motion: MotionRows) -> MotionRows:
+        """The first rows of a motion, which is over where it begins at a limit and goes beyond."""
+        place = Span(0, 1, one.response.rows)
+        end = run_end(one, motion.report, motion.report.rows)
+        return stopped_at_start(block_of(one, motion, end, place), motion)
 
 
 class _March:
@@ -193,6 +234,7 @@ class _March:
         self._free, self._is_left = Semaphore(1), False
         # an interrupt ends the process without it
         self._thread = Thread(target=self._run, name="response", daemon=True)
+        atexit.register(self.leave)  # it must not come back to an interpreter that has ended
         self._thread.start()
 
     def __iter__(self) -> Iterator[MotionRows]:
@@ -210,6 +252,7 @@ class _March:
 
     def leave(self) -> None:
         """Ends the thread, whether or not all rows have been taken."""
+        atexit.unregister(self.leave)
         self._is_left = True
         self._free.release()
         self._thread.join()

@@ -83,10 +83,10 @@ def stopped_at_start(result: ResponseResult, moved: MotionRows) -> MotionRows:
             continue
 
         def cut(array: NDArray[Any]) -> NDArray[Any]:
-            found = np.array(array)
-            found[..., 1] = found[..., 0]  # the stop's own place
-            if found.dtype == np.float64:
-                found[..., 2:] = np.nan
+            width = max(array.shape[-1], 2)
+            none = np.nan if array.dtype == np.float64 else 0
+            found = np.full((*array.shape[:-1], width), none, dtype=array.dtype)
+            found[..., :2] = array[..., :1]  # the stop's own place, too
             return found
 
         report = moved.report._replace(

@@ -21,28 +21,54 @@ from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.sweep import bends, jumps_between, place_text, size_text, value_at
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import ResponseProblem
+    from mechkin_cli.mechanism import Problem, ResponseProblem
+    from mechkin_cli.response.report import MotionReport
     from mechkin_cli.response.result import ResponseResult
     from mechkin_cli.session import Session
+    from mechkin_cli.show import Floats
+    from mechkin_cli.sweep import Bend
 
 
-def slope_ends(result: ResponseResult, chosen: Session) -> list[SlopeEnd]:
-    """The places at which slopes jump, in what a motion has passed, and somewhat beyond."""
-    rows, report, ends = result.row_states, result.report, []
-    if report is None or not rows.reached.any():
-        return []
-    for bend in bends(result.problem):
-        every = np.broadcast_to(np.asarray(result.quantity(bend.name).value), rows.reached.shape)
-        last = value_at(chosen, bend.name, np.array(report.last))
-        values = np.append(every[rows.reached], last)
-        slack = tolerances.SLOPE_RANGE + float(np.abs(np.diff(values)).max())
-        jumps = jumps_between(bend, float(values.min()) - slack, float(values.max()) + slack)
-        joint, _, coordinate = bend.name.rpartition(".")
-        for jump in jumps:
-            words = place_text(result.problem, bend, jump.at)
-            by, place = size_text(result.problem, bend, jump.size), result.response.place
-            ends.append(SlopeEnd(words, place, joint, coordinate, jump.at, bend.owner, by))
-    return ends
+class BendsPassed:
+    """What a motion passes of the functions whose slopes may jump: the least and the largest value
+    of each coordinate in its rows, the last one, and the longest way from row to row."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._passed: dict[Bend, tuple[float, float, float, float]] = {}
+        self.bends = bends(problem)
+
+    def add(self, result: ResponseResult) -> None:
+        """Adds rows."""
+        reached = result.row_states.reached
+        for bend in self.bends if reached.any() else ():
+            every = np.broadcast_to(np.asarray(result.quantity(bend.name).value), reached.shape)
+            self._add(bend, every[reached])
+
+    def _add(self, bend: Bend, values: Floats) -> None:
+        first = float(values[0])
+        least, most, last, way = self._passed.get(bend, (first, first, first, 0.0))
+        way = max(way, float(np.abs(np.diff(values, prepend=last)).max()))
+        least, most = min(least, float(values.min())), max(most, float(values.max()))
+        self._passed[bend] = least, most, float(values[-1]), way
+
+    def ends(
+        self, report: MotionReport | None, chosen: Session, response: ResponseProblem
+    ) -> list[SlopeEnd]:
+        """The places at which slopes jump, in what the motion has passed, and somewhat beyond."""
+        ends: list[SlopeEnd] = []
+        for bend in [*self._passed] if report is not None else ():
+            assert report is not None
+            self._add(bend, np.array([value_at(chosen, bend.name, np.array(report.last))]))
+            least, most, _, way = self._passed[bend]
+            slack = tolerances.SLOPE_RANGE + way
+            joint, _, coordinate = bend.name.rpartition(".")
+            for jump in jumps_between(bend, least - slack, most + slack):
+                words = place_text(chosen.problem, bend, jump.at)
+                by = size_text(chosen.problem, bend, jump.size)
+                ends.append(
+                    SlopeEnd(words, response.place, joint, coordinate, jump.at, bend.owner, by)
+                )
+        return ends
 
 
 def at_jump(chosen: Session, response: ResponseProblem, moved: MotionRows) -> MotionRows:
@@ -68,5 +94,5 @@ def before_jump(response: ResponseProblem, moved: MotionRows) -> MotionRows:
     if report.end is not MotionEnd.STOPPED or not isinstance(response.stops[report.stop], SlopeEnd):
         return moved
     states = moved.states.copy()
-    states[:, report.rows :] = nan
+    states[:, report.rows - report.first :] = nan
     return replace(moved, report=report._replace(end=MotionEnd.STUCK), states=states)

@@ -23,13 +23,13 @@ from mechkin_cli.response.jumps import before_jump
 from mechkin_cli.response.report import MotionEnd
 from mechkin_cli.response.result import ResponseResult
 from mechkin_cli.session import Chart, input_unit
-from mechkin_cli.sweep import SweepRows, bends
+from mechkin_cli.sweep import SweepRows
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.kernel._kernel import DrivenLaws
-    from mechkin_cli.mechanism import Problem, ResponseProblem
+    from mechkin_cli.mechanism import Limit, Problem, ResponseProblem
     from mechkin_cli.response.integration import Beginning
     from mechkin_cli.response.report import MotionReport, MotionRows
     from mechkin_cli.session import Session
@@ -140,14 +140,17 @@ def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
 
 
 def why_held(one: Prepared) -> str:
-    """Why all rows must be held at once; "" where they need not. Behind an impact, and up to a jump
-    of a slope, the motion is another one; and which reactions are unique where constraints are
-    redundant goes by all rows."""
-    if any(isinstance(stop, CrossingEnd) and stop.limit for stop in one.response.stops):
-        return "as its limits may end or turn its motion"
-    if bends(one.free.problem):
-        return "as the slope of a function jumps"
-    return "as constraints are redundant" if one.free.is_redundant else ""
+    """Why all rows must be held at once; "" where they need not. Behind an impact the motion is
+    another one."""
+    if any(limit.restitution is not None for limit in limits_of(one.response)):
+        return "as its motion may turn at limits"
+    return ""
+
+
+def limits_of(response: ResponseProblem) -> list[Limit]:
+    """The limits at which it may end."""
+    stops = [stop for stop in response.stops if isinstance(stop, CrossingEnd)]
+    return [stop.limit for stop in stops if stop.limit is not None]
 
 
 def refuse_many_rows(one: Prepared, variants: int = 1) -> None:

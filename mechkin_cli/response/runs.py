@@ -15,7 +15,6 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
-    CrossingEnd,
     MotionInputs,
     SpacedMoments,
     eliminated,
@@ -42,8 +41,8 @@ from mechkin_cli.response.integration import (
     watched_stop,
     with_loads,
 )
-from mechkin_cli.response.jumps import at_jump, slope_ends
-from mechkin_cli.response.report import MotionEnd, MotionRows
+from mechkin_cli.response.jumps import BendsPassed, at_jump
+from mechkin_cli.response.report import MotionEnd, MotionReport, MotionRows
 from mechkin_cli.response.resting import (
     Contact,
     RestingMotion,
@@ -51,7 +50,7 @@ from mechkin_cli.response.resting import (
     with_contacts,
 )
 from mechkin_cli.response.result import ENERGIES, FreeResult, ResponseResult
-from mechkin_cli.response.rows import Prepared, refuse_many_rows, rows_of
+from mechkin_cli.response.rows import Prepared, limits_of, refuse_many_rows, rows_of
 from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
@@ -307,20 +306,29 @@ def integrated_rows(
 def _to_jumps(one: Prepared, result: ResponseResult, packing: Packing) -> ResponseResult:
     """The rows up to a place at which the slope of a function jumps, where the motion comes to one:
     no step across it is a motion."""
-    ends = slope_ends(result, one.chosen)
-    if not ends:
+    passed = BendsPassed(result.problem)
+    passed.add(result)
+    again = ended_at_jumps(one, passed, result.report)
+    if again is one:
         return result
+    (moved,) = integrated_rows([again], packing)
+    return _rebounding(again, at_jump(again.chosen, again.response, moved), packing)
+
+
+def ended_at_jumps(one: Prepared, passed: BendsPassed, report: MotionReport | None) -> Prepared:
+    """With an end at each jump of a slope that its motion has passed; itself without any."""
+    ends = passed.ends(report, one.chosen, one.response)
+    if not ends:
+        return one
     response = replace(one.response, stops=(*one.response.stops, *ends))
     free = with_loads(one.free, replace(one.free.problem, response=response))
-    again = replace(one, response=response, free=free)
-    (moved,) = integrated_rows([again], packing)
-    return _rebounding(again, at_jump(again.chosen, response, moved), packing)
+    return replace(one, response=response, free=free)
 
 
 def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
     """The rows with those behind impacts at limits that have a restitution, and of rests there."""
     result = rows_of(one, moved)
-    if any(isinstance(stop, CrossingEnd) and stop.limit for stop in one.response.stops):
+    if limits_of(one.response):
         moved = stopped_at_start(result, moved)
         result = rows_of(one, moved)
     rebounds: list[Rebound] = []

@@ -34,7 +34,7 @@ __getattr__, __dir__ = lazy_names(
         "parts": "Part RunVerdicts has_parts",
         "result": "Readable Result",
         "rows": "SHIFTS SweepRows has_turns",
-        "slopes": "ROUNDED bends jumps_between place_text size_text value_at",
+        "slopes": "Bend ROUNDED bends jumps_between place_text size_text value_at",
         "sweep": "Sweep analyze at_once closed_rows first_assembly judge_condition "
         "rest_on_reactions row_notes",
     },

@@ -4,6 +4,8 @@ the same steps."""
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections import defaultdict
 from pathlib import Path
 
@@ -88,6 +90,37 @@ responses:
   swing: {start: {O.theta: 0}, time: {from: 0, to: 4, count: 41}}
 tables: [{name: t, run: swing, columns: [time, O.theta, row.status]}]
 """
+REDUNDANT = """format: 1
+links:
+  crank: {mass: 1, center_of_mass: [0.05, 0.1, 0], inertia: {zz: 0.01}}
+  coupler: {mass: 2, center_of_mass: [0.3, 0.3, 0.1], inertia: {zz: 0.05}}
+  rocker: {mass: 1, center_of_mass: [0.7, 0.2, 0], inertia: {zz: 0.02}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [crank, coupler], point: [0.05, 0.2, 0], axis: [0, 0, 1]}
+  C: {type: R, links: [coupler, rocker], point: [0.65, 0.4, 0], axis: [0, 0, 1]}
+  D: {type: R, links: [ground, rocker], point: [0.75, 0, 0], axis: [0, 0, 1]}
+loads: [{type: gravity, g: [0, -9.81, 0]}]
+responses: {run: {start: {A.theta: 0, A.theta_dot: 3 rad/s}, time: {from: 0, to: 2, count: 41}}}
+tables:
+  - {name: t, run: run, columns: [time, D.theta, B.force.x, B.force.z, C.moment.x, norm(D.force)]}
+"""
+BENT = """format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  wheel: {mass: 1, center_of_mass: [0, 0], inertia: 0.5}
+  slide: {mass: 1, center_of_mass: [0, 0]}
+joints:
+  A: {type: R, links: [ground, wheel], point: [0, 0]}
+  B: {type: P, links: [ground, slide], point: [0, 0], axis: [1, 0]}
+couplings:
+  K: {type: function, of: A.theta, gives: B.s, value: "0.3 m/rad*abs(theta - 0.1 rad)"}
+loads: [{type: torque, joint: A, value: 1}]
+responses: {r: {start: {A.theta: -1, A.theta_dot: 1}, time: {from: 0, to: 2, count: 41}}}
+tables: [{name: t, run: r, columns: [time, A.theta, B.s_dot, K.force, row.status]}]
+"""
+LIMITED = PENDULUM.format(to=3, count=61, stop="") + "limits: {O.theta: {min: -0.5, max: 1.5}}\n"
 TEXTS = {
     "to the end": PENDULUM.format(to=3, count=61, stop=""),
     "a stop between rows": PENDULUM.format(
@@ -98,6 +131,13 @@ TEXTS = {
     "friction": DOUBLE,
     "a drive": DRIVEN,
     "rows that are not reached": LOST,
+    "redundant constraints": REDUNDANT,
+    "a slope that jumps": BENT,
+    "a slope that would jump later": BENT.replace("0.1 rad", "9 rad"),
+    "a limit": LIMITED,
+    "a limit at the start": LIMITED.replace("max: 1.5", "max: 1").replace(
+        "start: {O.theta: 1}", "start: {O.theta: 1, O.theta_dot: 1}"
+    ),
     "rcsr": FILE_OF["rcsr_response"].read_text(encoding="utf-8"),
 }
 
@@ -155,6 +195,9 @@ def test_blocks_have_the_bytes_of_the_run(
         ("a stop between rows", ["O.theta"], 2),
         # what is measured by energies of all rows
         ("to the end", ["O.theta", "row.energy_error"], 2),
+        # whether it comes to a place at which a slope jumps, and then how many rows there are
+        ("a slope that would jump later", ["A.theta"], 2),
+        ("a slope that jumps", ["A.theta"], 3),
     ],
 )
 @pytest.mark.parametrize("rows", [1, 7, 41, 61])
@@ -221,7 +264,27 @@ def test_who_leaves_ends_the_march(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sum(block.rows for block in stream) == 61
 
 
-def test_a_response_with_limits_is_held(monkeypatch: pytest.MonkeyPatch) -> None:
+ABANDONED = """
+import sys
+import mechkin_cli as mk
+from mechkin_cli import tolerances
+tolerances.PART_ROWS = tolerances.LEAST_PART_ROWS = 2
+blocks = iter(mk.loads(sys.stdin.read()).stream(run="swing", rows=2))
+print(next(blocks).rows)
+"""
+
+
+def test_a_program_may_end_before_its_stream() -> None:
+    """The thread that marches on does not come back to an interpreter that has ended."""
+    for _ in range(3):
+        words = [sys.executable, "-P", "-c", ABANDONED]
+        ended = subprocess.run(
+            words, input=TEXTS["to the end"], capture_output=True, text=True, check=False
+        )
+        assert (ended.returncode, ended.stdout, ended.stderr) == (0, "2\n", "")
+
+
+def test_a_response_with_impacts_is_held(monkeypatch: pytest.MonkeyPatch) -> None:
     """Behind an impact the motion is another one: its rows come in one piece, and are the same."""
     text = TEXTS["to the end"] + "limits: {O.theta: {min: -0.5, max: 1.5, restitution: 0.5}}\n"
     model = mk.loads(text)
@@ -246,7 +309,7 @@ def test_who_is_held_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     text = TEXTS["to the end"] + "limits: {O.theta: {min: -0.5, max: 1.5, restitution: 0.5}}\n"
     monkeypatch.setattr(tolerances, "MOST_NUMBERS", 100)
     model = mk.loads(text.split("tables:")[0] + "limits:" + text.split("limits:")[1])
-    with pytest.raises(mk.UsageError, match=r"held whole, as its limits .*: take a larger step"):
+    with pytest.raises(mk.UsageError, match=r"held whole, as its motion .*: take a larger step"):
         next(iter(model.stream(["O.theta"], run="swing")))
 
 
