@@ -3,7 +3,7 @@ many coordinates as are free; idle freedoms of what moves freely are held."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mechkin_cli import mobility
@@ -103,16 +103,33 @@ def response_graph(
         return graph
     at = [float(item.values[0]) for item in first.motion.inputs]
     standing = dict(zip(driven, [*at, *first.held_at.values()], strict=True))
-    moving = left_free(mechanism, standing)
-    # the drawing alone may be a special position
-    if len(moving) > 1 and all(moving):
+    if _is_left_free(first, standing):
         return _undetermined(response, mechanism, driven)._replace(place=place)
     for extra in reversed(response.independent):
         fewer = {one: value for one, value in standing.items() if one != extra}
-        moving = left_free(mechanism, fewer)
-        if moving and not any(moving):
+        if _is_left_free(first, fewer) is False:
             return _too_many(response, extra)._replace(place=place)
     return graph
+
+
+def _is_left_free(first: Problem, standing: Mapping[tuple[str, str], float]) -> bool | None:
+    """Whether some link can move while some coordinates rest; None where that is not clear."""
+    if not first.mechanism.couplings:  # of which the ranks of pairs know nothing
+        places = left_free(first.solved_mechanism, standing)
+        if not places:
+            return None
+        if not all(places):
+            return None if any(places) else False
+        if len(places) > 1:
+            return True
+    # the drawing alone may be a special position
+    motion = first.motion
+    resting = tuple(item for item in motion.inputs if (item.joint, item.coordinate) in standing)
+    found = mobility.find_mobility(first.moved(motion._replace(inputs=resting)))
+    if found.mobility is None:
+        return None
+    is_undriven = any(note.code == "undriven-freedom" for note in found.diagnostics)
+    return is_undriven or (not resting and found.mobility > len(found.idle))
 
 
 def _is_solvable(mechanism: Mechanism, driven: Sequence[tuple[str, str]]) -> bool:

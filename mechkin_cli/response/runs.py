@@ -77,6 +77,15 @@ def beginning(session: Session, response: ResponseProblem, state: Floats) -> Beg
     response's independent coordinates and then its driven ones."""
     free = len(response.independent)
     moved = _unit_rates(session, state)
+    if not np.isfinite(moved).all():
+        return Diagnostic(
+            "start-at-dead-centre",
+            "error",
+            "the start is a special position: the rates of the coordinates that it names do not "
+            "fix those of all others",
+            response.place,
+            hint="start beside it, or name another coordinate",
+        )
     rates = _rates(session, response, state, moved)
     if isinstance(rates, Diagnostic):
         return rates
