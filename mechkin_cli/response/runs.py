@@ -13,16 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
     MotionInputs,
     SpacedMoments,
-    eliminated,
     read_for,
     response_problem,
 )
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Demand
 from mechkin_cli.record import replace
 from mechkin_cli.response.impacts import (
     ImpactAt,
@@ -51,7 +48,8 @@ from mechkin_cli.response.resting import (
 )
 from mechkin_cli.response.result import ENERGIES, FreeResult, ResponseResult
 from mechkin_cli.response.rows import Prepared, limits_of, refuse_many_rows, rows_of
-from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, turn_count
+from mechkin_cli.response.start import beginning
+from mechkin_cli.session import Ask, Chart, Packing, Session, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
     SweepRows,
@@ -60,7 +58,6 @@ from mechkin_cli.sweep import (
     judge_condition,
     judge_limits,
     limited,
-    lost_rates,
     rest_on_reactions,
     row_notes,
     unfounded_in_motion,
@@ -70,112 +67,6 @@ from mechkin_cli.verdict import Status
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Limit, Problem, ResponseProblem, Wanted
     from mechkin_cli.show import Floats
-
-
-def beginning(session: Session, response: ResponseProblem, state: Floats) -> Beginning | Diagnostic:
-    """How the mechanism moves from an assembly `state` (states,) of a session whose inputs are the
-    response's independent coordinates and then its driven ones."""
-    free = len(response.independent)
-    moved = _unit_rates(session, state)
-    if not np.isfinite(moved).all():
-        return Diagnostic(
-            "start-at-dead-centre",
-            "error",
-            "the start is a special position: the rates of the coordinates that it names do not "
-            "fix those of all others",
-            response.place,
-            hint="start beside it, or name another coordinate",
-        )
-    rates = _rates(session, response, state, moved)
-    if isinstance(rates, Diagnostic):
-        return rates
-    begin = state.copy()
-    layout = session.layout
-    # the whole turns of an angle that the file names stay in its state
-    for number, (edge, freedom) in enumerate(session.graph.inputs):
-        begin[layout.state(edge, freedom)] = session.inputs.values[number, 0]
-    first = np.zeros(moved.shape[1])
-    for rate, row in zip(rates, moved, strict=True):
-        first = first + rate * row
-    return Beginning(begin, first, moved[:free])
-
-
-def _unit_rates(session: Session, state: Floats) -> Floats:
-    """Rates of the columns (inputs, columns) where one input after the other has unit rate."""
-    count = len(session.graph.inputs)
-    repeated = np.zeros(count, dtype=np.intp)
-    reduced = session.inputs.reduced[:, repeated]
-    rows = RowInputs(reduced, state[:, None][:, repeated], np.eye(count))
-    batch = session.run(rows, Ask(Demand.VELOCITY, derivatives=True))
-    assert batch.first is not None
-    return np.ascontiguousarray(batch.first.T)
-
-
-def _rates(
-    session: Session, response: ResponseProblem, state: Floats, moved: Floats
-) -> Floats | Diagnostic:
-    """Rates of all inputs in kernel units: the driven ones by their laws, the independent ones so
-    that the coordinates named with a rate have it."""
-    rates: Floats = session.inputs.rates[:, 0].copy()
-    independent = set(response.independent)
-    if any(
-        one.rate is not None and (one.joint, one.coordinate) not in independent
-        for one in response.start
-    ):
-        return solve_rates(session, response, state, rates, len(moved))
-    if not rates.any():
-        return rates
-    # at its dead centre a coordinate has no rate: any other than zero means infinite ones of others
-    lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
-    # behind the inputs is what is held, at rest
-    inputs = session.problem.motion.inputs
-    named = [one.name for k, one in enumerate(inputs) if lost[k] and rates[k] != 0.0]
-    if not named:
-        return rates
-    return Diagnostic(
-        "start-at-dead-centre",
-        "error",
-        f"the start is a dead centre of {', '.join(named)}: no rate of it is one of the mechanism",
-        response.place,
-        hint="give the rate of a coordinate that moves there, or start beside it",
-    )
-
-
-def solve_rates(
-    session: Session, response: ResponseProblem, state: Floats, rates: Floats, count: int
-) -> Floats | Diagnostic:
-    """Rates of all inputs (inputs,), kernel units, with which the coordinates named in the start
-    have their rates there.
-
-    Linear in the independent rates: the named rates are read at unit rates of one input after the
-    other. `rates` holds those of the driven inputs behind the independent ones.
-    """
-    free = len(response.independent)
-    with_rate = [one for one in response.start if one.rate is not None]
-    known = session.problem.quantities()
-    wanted = [known[f"{one.name}_dot"] for one in with_rate]
-    readout = session.readout(wanted)
-    repeated = np.zeros(count, dtype=np.intp)
-    reduced = session.inputs.reduced[:, repeated]
-    rows = RowInputs(reduced, state[:, None][:, repeated], np.eye(count))
-    batch = session.run(rows, Ask(Demand.VELOCITY, readout))
-    assert batch.outputs is not None
-    by_rate = np.array([batch.outputs[readout.slots[quantity.name].start] for quantity in wanted])
-    right = np.array([one.rate or 0.0 for one in with_rate])
-    for number in range(free, count):
-        right = right - by_rate[:, number] * rates[number]
-    solved = eliminated(by_rate[:, :free].tolist(), right.tolist(), tolerances.RANK_ZERO)
-    if solved is None:
-        names = ", ".join(f"{one.name}_dot" for one in with_rate)
-        return Diagnostic(
-            "start-rates",
-            "error",
-            f"the rates given at the start ({names}) do not fix how the mechanism moves",
-            response.place,
-            hint="give the rates of the coordinates that start names, or of others that move "
-            "with each of them",
-        )
-    return np.array([*solved, *rates[free:]])
 
 
 ANY_PACKING = Packing()
@@ -235,7 +126,7 @@ def _prepared(chosen: Session, response: ResponseProblem) -> Prepared:
     free = free_session(chosen, response.independent)
     if start.state is None:
         return Prepared(response, chosen, start, free, None, None)
-    begun = beginning(chosen, response, start.state)
+    begun = beginning(chosen, free, response, start.state)
     unfounded = unfounded_in_motion(free.problem, redundant=free.is_redundant)
     begun = begun if unfounded is None else unfounded
     if not isinstance(begun, Beginning):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mpmath as mp
 import numpy as np
+import pytest
 
 import mechkin_cli as mk
 
@@ -62,3 +63,87 @@ def test_at_rest_it_may_begin_there() -> None:
 def test_just_beside_it_is_no_dead_centre() -> None:
     r = run("D.s: 39.999, D.s_dot: 1 mm/s")
     assert r["row.status"][0] == "ok"
+
+
+IN_LINE = """format: 1
+plane: xy
+links:
+  a: {mass: 1, center_of_mass: [0.2, 0.2], inertia: 0.1}
+  b: {mass: 1, center_of_mass: [0.6, 0.3], inertia: 0.1}
+  c: {mass: 1, center_of_mass: [1, 0.1], inertia: 0.1}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [a, b], point: [0.25, 0.5]}
+  C: {type: R, links: [b, c], point: [0.75, 0.25]}
+  D: {type: R, links: [ground, c], point: [1.25, 0]}
+loads: [{type: gravity, g: [0, -9.81]}]
+responses:
+  r: {start: START, time: {from: 0, to: 0.2, step: 0.1}, tolerance: 1e-12}
+"""
+SLIDER = """format: 1
+plane: xy
+links:
+  crank: {mass: 1, center_of_mass: [0.25, 0], inertia: 0.1}
+  rod: {mass: 1, center_of_mass: [1, 0], inertia: 0.1}
+  slider: {mass: 1, center_of_mass: [1.5, 0], inertia: 0.1}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: R, links: [crank, rod], point: [0.5, 0]}
+  C: {type: R, links: [rod, slider], point: [1.5, 0]}
+  D: {type: P, links: [ground, slider], point: [1.5, 0], axis: [1, 0]}
+loads: [{type: gravity, g: [0, -9.81]}]
+responses:
+  r: {start: START, time: {from: 0, to: 0.2, step: 0.1}, tolerance: 1e-12}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "start", "same"),
+    [
+        (IN_LINE, "{A.theta: 0}", "{D.theta: 0}"),
+        (IN_LINE, "{A.theta: 0, A.theta_dot: 0}", "{D.theta: 0}"),
+        (IN_LINE, "{A.theta: 0, D.theta_dot: 1}", "{D.theta: 0, D.theta_dot: 1}"),
+        (SLIDER, "{D.s: 0}", "{A.theta: 0}"),
+        (SLIDER, "{D.s: 0, A.theta_dot: 3}", "{A.theta: 0, A.theta_dot: 3}"),
+    ],
+)
+def test_a_place_may_be_named_by_what_is_at_a_dead_centre_there(
+    text: str, start: str, same: str
+) -> None:
+    """As by a coordinate that moves there, which has its rates by the ordinary way."""
+    names = ["A.theta", "B.theta", "A.theta_dot", "B.theta_dot"]
+    one, other = (
+        mk.loads(text.replace("START", each)).respond("r", names) for each in (start, same)
+    )
+    assert one.complete
+    for name in names:
+        np.testing.assert_allclose(one[name], other[name], atol=1e-9)
+
+
+@pytest.mark.parametrize("rate", ["", ", A.theta_dot: 1"])
+def test_a_start_in_a_branch_point_is_named(rate: str) -> None:
+    flat = IN_LINE.replace("[0.25, 0.5]", "[0.25, 0]").replace("[0.75, 0.25]", "[1.5, 0]")
+    rows = mk.loads(flat.replace("START", f"{{A.theta: 0{rate}}}")).respond("r", ["D.theta"])
+    (said,) = [each for each in rows.diagnostics if each.severity == "error"]
+    assert said.code == "start-at-dead-centre"
+    assert "a special position, as a branch point" in said.message
+    assert set(rows["row.status"]) == {"branch-lost"}
+
+
+def test_a_rate_of_what_never_moves_fixes_nothing() -> None:
+    """A dyad between the pins of the coupler stands still on it, but for rounding."""
+    text = IN_LINE.replace("point: [0.25, 0.5]", "point: [0.27, 0.53]")
+    text = text.replace("point: [0.75, 0.25]", "point: [0.81, 0.74]").replace(
+        "joints:\n",
+        "  d: {mass: 1, center_of_mass: [0.3, 0.5], inertia: 0.1}\n"
+        "  e: {mass: 1, center_of_mass: [0.4, 0.9], inertia: 0.1}\n"
+        "joints:\n"
+        "  E: {type: R, links: [a, d], point: [0.27, 0.53]}\n"
+        "  F: {type: R, links: [d, e], point: [0.31, 0.93]}\n"
+        "  G: {type: R, links: [e, c], point: [0.81, 0.74]}\n",
+    )
+    rows = mk.loads(text.replace("START", "{A.theta: 0, F.theta_dot: 0.1}")).respond(
+        "r", ["A.theta"]
+    )
+    (said,) = [each for each in rows.diagnostics if each.severity == "error"]
+    assert said.code == "start-rates"

@@ -1,0 +1,186 @@
+"""How a response begins: its place is assembled by the coordinates that its start names, and its
+free rates are told along these, or where one of them is at a dead centre along others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel.functions import RandomStarts
+from mechkin_cli.mechanism import ORDERS, eliminated, is_angle
+from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.response.integration import Beginning
+from mechkin_cli.session import Ask, Chart, RowInputs, Session
+from mechkin_cli.sweep import lost_rates
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism import ResponseProblem, StartValue, Wanted
+    from mechkin_cli.show import Floats
+
+
+class _UnitRates(NamedTuple):
+    """Rows at one place with unit rate of one free direction after the other, then of the driven
+    coordinates, and the rates of all columns there, `moved` (directions and coordinates, columns).
+    """
+
+    session: Session
+    rows: RowInputs
+    moved: Floats
+
+    @staticmethod
+    def of(session: Session, rows: RowInputs) -> _UnitRates:
+        """As the session has them, not finite where they have none."""
+        batch = session.run(rows, Ask(Demand.VELOCITY, derivatives=True))
+        assert batch.first is not None
+        return _UnitRates(session, rows, np.ascontiguousarray(batch.first.T))
+
+    @property
+    def are_fixed(self) -> bool:
+        """Whether the place has them."""
+        return bool(np.isfinite(self.moved).all())
+
+    def read(self, wanted: Sequence[Wanted]) -> Floats:
+        """Some rates in SI (wanted, directions and coordinates)."""
+        readout = self.session.readout(wanted)
+        batch = self.session.run(self.rows, Ask(Demand.VELOCITY, readout))
+        assert batch.outputs is not None
+        return np.array([batch.outputs[readout.slots[one.name].start] for one in wanted])
+
+
+def _by_coordinates(session: Session, state: Floats) -> _UnitRates:
+    """The directions are those of the coordinates that the start names, the session's inputs."""
+    count = len(session.graph.inputs)
+    each = np.zeros(count, dtype=np.intp)
+    rows = RowInputs(session.inputs.reduced[:, each], state[:, None][:, each], np.eye(count))
+    return _UnitRates.of(session, rows)
+
+
+def _by_directions(session: Session, free: Session, state: Floats, count: int) -> _UnitRates:
+    """Any directions of the `free` motion, which have rates where some coordinate is at a dead
+    centre, too; not at a branch point."""
+    driven = len(session.graph.inputs) - count
+    each = np.zeros(count + driven, dtype=np.intp)
+    directions = RandomStarts().between(1.0, count * free.plan.columns)
+    units = np.eye(count + driven)
+    none = np.zeros((count, count + driven))
+    chart = Chart(directions[:, None][:, each], units[:count], none, none[:0])
+    inputs, states = session.inputs.reduced[count:, each], state[:, None][:, each]
+    return _UnitRates.of(free, RowInputs(inputs, states, units[count:], chart=chart))
+
+
+def beginning(
+    session: Session, free: Session, response: ResponseProblem, state: Floats
+) -> Beginning | Diagnostic:
+    """How the mechanism moves from an assembly `state` (states,) of a session whose inputs are the
+    response's independent coordinates and then its driven ones; `free` is its free motion's."""
+    count = len(response.independent)
+    begin = state.copy()
+    layout = session.layout
+    # the whole turns of an angle that the file names stay in its state
+    for number, (edge, freedom) in enumerate(session.graph.inputs):
+        begin[layout.state(edge, freedom)] = session.inputs.values[number, 0]
+    unit = _by_coordinates(session, state)
+    at_dead_centre = not unit.are_fixed
+    if at_dead_centre:
+        unit = _by_directions(session, free, begin, count)
+    if not unit.are_fixed:
+        return Diagnostic(
+            "start-at-dead-centre",
+            "error",
+            "the start is a special position, as a branch point, at which rates of the coordinates "
+            "that it names do not fix how the mechanism moves on",
+            response.place,
+            hint="start beside it",
+        )
+    rates = _rates(session, response, state, unit, at_dead_centre=at_dead_centre)
+    if isinstance(rates, Diagnostic):
+        return rates
+    first = np.zeros(unit.moved.shape[1])
+    for rate, row in zip(rates, unit.moved, strict=True):
+        first = first + rate * row
+    return Beginning(begin, first, unit.moved[:count])
+
+
+def _rates(
+    session: Session,
+    response: ResponseProblem,
+    state: Floats,
+    unit: _UnitRates,
+    *,
+    at_dead_centre: bool,
+) -> Floats | Diagnostic:
+    """Rates of all inputs in kernel units, or along directions that stand for the independent
+    ones: the driven ones by their laws, the others so that the coordinates named with a rate have
+    it."""
+    rates: Floats = session.inputs.rates[:, 0].copy()
+    independent = set(response.independent)
+    # at its dead centre a coordinate has no rate: any other than zero means infinite ones of others
+    lost = np.zeros(rates.size, dtype=np.bool_)
+    if rates.any():
+        lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
+    # behind the inputs is what is held, at rest
+    inputs = session.problem.motion.inputs
+    named = [one.name for k, one in enumerate(inputs) if lost[k] and rates[k] != 0.0]
+    if named:
+        return Diagnostic(
+            "start-at-dead-centre",
+            "error",
+            f"the start is a dead centre of {', '.join(named)}: no rate of it is one of the "
+            "mechanism",
+            response.place,
+            hint="give the rate of a coordinate that moves there, or start beside it",
+        )
+    with_rate = [one for one in response.start if one.rate is not None]
+    if at_dead_centre:
+        still = [one for one in response.start if one.rate is None]
+        with_rate += still[: max(len(independent) - len(with_rate), 0)]
+        if not any(one.rate for one in with_rate):
+            rates[: len(independent)] = 0.0
+            return rates
+    elif all((one.joint, one.coordinate) in independent for one in with_rate):
+        return rates
+    return solve_rates(session, response, unit, rates, with_rate)
+
+
+def solve_rates(
+    session: Session,
+    response: ResponseProblem,
+    unit: _UnitRates,
+    rates: Floats,
+    with_rate: Sequence[StartValue],
+) -> Floats | Diagnostic:
+    """Rates of all inputs (inputs,), kernel units, with which some coordinates have their rates.
+
+    Linear in the independent rates: the named rates are read at unit rates of one input after the
+    other. `rates` holds those of the driven inputs behind the independent ones.
+    """
+    free, length = len(response.independent), session.layout.length
+    known = session.problem.quantities()
+    by_rate = unit.read([known[f"{one.name}{ORDERS[1]}"] for one in with_rate])
+    right = np.array([one.rate or 0.0 for one in with_rate])
+    for number in range(free, len(rates)):
+        right = right - by_rate[:, number] * rates[number]
+    # what does not move in parts of what moves most has no rate but rounding
+    largest = np.abs(unit.moved[:free]).max(axis=1)
+    units = np.array([1.0 if is_angle(one.coordinate) else length for one in with_rate])
+    moves = np.abs(by_rate[:, :free]) > tolerances.RANK_ZERO * units[:, None] * largest
+    solved = None
+    if len(with_rate) == free:
+        matrix = np.where(moves, by_rate[:, :free], 0.0)
+        solved = eliminated(matrix.tolist(), right.tolist(), tolerances.RANK_ZERO)
+    if solved is None:
+        names = ", ".join(f"{one.name}_dot" for one in with_rate if one.rate is not None)
+        return Diagnostic(
+            "start-rates",
+            "error",
+            f"the rates given at the start ({names}) do not fix how the mechanism moves",
+            response.place,
+            hint="give the rates of the coordinates that start names, or of others that move "
+            "with each of them",
+        )
+    return np.array([*solved, *rates[free:]])
