@@ -465,6 +465,8 @@ def configuration_at(
     (inputs,) and a state (states,), kernel units; None if none is found."""
     poses = Poses(session, body.links, body.centre, body.size)
     turns, places = poses.at(inputs[:, None], state[:, None])
+    if not (np.isfinite(turns).all() and np.isfinite(places).all()):
+        return None  # inputs that are too few do not place all links
     links = poses.named(turns[0], places[0])
     coordinates, _ = probe_of(session).read(inputs, state[:, None])
     seed = _seed(body, {name: float(value[0]) for name, value in coordinates.items()}, links)
