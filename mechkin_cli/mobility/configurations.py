@@ -177,10 +177,18 @@ class LoopPart:
             motions = regular_motions(self.fronts, jacobian, zero)
         return rank_of(jacobian, zero) if motions is None else full_rank(jacobian, motions)
 
-    def stresses_in(self, jacobian: Floats, zero: float) -> int:
-        """How many independent stresses it has by the Jacobian (equations, freedoms) of all."""
-        own = jacobian[self.rows[:, None], self.columns]
-        return int(self.rank(own, zero).stresses.shape[1])
+    def rank_reached(self, jacobian: Floats, most: int) -> Rank:
+        """The rank at a place that was reached, where it has at most so many motions as where it
+        came from: next to a place a rank does not fall."""
+        rank = self.rank(jacobian, tolerances.MOBILITY_RANK_REACHED)
+        if rank.motions.shape[1] > most:
+            rank = self.rank(jacobian, tolerances.RANK_ZERO)
+        return rank
+
+    def own(self, jacobian: Floats) -> Floats:
+        """Its part of the Jacobian (equations, freedoms) of all."""
+        own: Floats = jacobian[self.rows[:, None], self.columns]
+        return own
 
     def closing(self, states: Floats) -> tuple[Floats, Floats]:
         """Misses (places, rows) and Jacobian (places, rows, columns) at states (places, states)."""

@@ -224,6 +224,23 @@ def _spread(
     return np.where(known, units, np.where(passing, every[:, None], np.inf).min(axis=0))
 
 
+def usual(sizes: Sequence[Floats] | Floats) -> Floats:
+    """The lower median of sizes (places, ...): next to where families cross a double root is known
+    to less than elsewhere."""
+    return np.asarray(np.sort(np.asarray(sizes), axis=0)[(len(sizes) - 1) // 2])
+
+
+def still_along(
+    part: LoopPart, state: Floats, family: Sequence[AssemblyComponent]
+) -> dict[int, int]:
+    """Columns of the whole that rest along a family, where the drawing has them, with their numbers
+    in the part."""
+    starts = np.repeat(state[None], len(family), axis=0)
+    steps = usual(np.abs(part.steps(np.array([one.state for one in family]), starts)))
+    still = np.flatnonzero(steps < tolerances.MOBILITY_CHORD_DOUBT)
+    return {int(part.columns[k]): int(k) for k in still}
+
+
 Move = tuple[float, float]
 """A move by its largest step (rad, parts of the size), and how far loops that are closed after it
 may be open."""
@@ -234,13 +251,14 @@ class Unclear(Exception):
 
 
 def component_at(
-    part: LoopPart, state: Floats, random: RandomStarts, move: Move
+    part: LoopPart, state: Floats, random: RandomStarts, move: Move, most: int
 ) -> AssemblyComponent:
-    """The component at a place, or at one next to it where the rank is larger."""
+    """The component at a place, or at one next to it where the rank is larger; where it was reached
+    from there are `most` motions of first order."""
     place = state
     for _ in range(tolerances.MOBILITY_TRIES):
         _, jacobians = part.closing(place[None])
-        rank = part.rank(jacobians[0], tolerances.MOBILITY_RANK_REACHED)
+        rank = part.rank_reached(jacobians[0], most)
         motions = rank.motions
         count = motions.shape[1]
         if count == 0 or rank.stresses.shape[1] == part.held:
@@ -251,10 +269,7 @@ def component_at(
         ends = closed(part, part.moved(np.repeat(place[None], len(moves), axis=0), moves))
         if not ends.good(move[1]).all():
             raise Unclear("moves do not close again")
-        ranks = [
-            part.rank(jacobian, tolerances.MOBILITY_RANK_REACHED).motions.shape[1]
-            for jacobian in ends.jacobians
-        ]
+        ranks = [part.rank_reached(jacobian, most).motions.shape[1] for jacobian in ends.jacobians]
         if min(ranks) == count:
             dimension, tangents = _chords(part, place, ends, moves)
             if not dimension:
@@ -282,7 +297,7 @@ def general_places(
         ends = closed(part, part.moved(np.repeat(one.state[None], 2, axis=0), moves))
         good = ends.good(tolerances.MOBILITY_CLOSED)
         for state, jacobian in zip(ends.states[good], ends.jacobians[good], strict=True):
-            motions = part.rank(jacobian, tolerances.MOBILITY_RANK_REACHED).motions
+            motions = part.rank_reached(jacobian, one.dimension + one.excess).motions
             if motions.shape[1] == one.dimension:
                 known.append(replace(one, state=state, tangents=motions, excess=0, alike=()))
     least = min(one.excess for one in known)
@@ -414,13 +429,13 @@ def freedom_of(
         beside = _less(along.T, along @ part.alone(state, along))
         for _ in range(tolerances.MOBILITY_TRIES if len(beside) else 0):
             heading = _units(random, 1, len(beside)) @ beside
-            component = _component_along(part, state, along, heading, random)
+            component = _component_along(part, state, along, heading, random, count)
             if component is not None and component.dimension + component.excess == count:
                 (steps,) = part.steps(component.state[None], state[None])
                 if np.abs(steps[list(rests)]).max() < tolerances.MOBILITY_CHORD_DOUBT:
                     return LocalFreedom(first, (component,))
     heading = _units(random, 1, count) @ first.motions.T
-    component = _component_along(part, state, first.motions, heading, random)
+    component = _component_along(part, state, first.motions, heading, random, count)
     if component is not None:
         return LocalFreedom(first, (component,))
     if regular:
@@ -432,18 +447,23 @@ def freedom_of(
 
 
 def _component_along(
-    part: LoopPart, state: Floats, motions: Floats, heading: Floats, random: RandomStarts
+    part: LoopPart,
+    state: Floats,
+    motions: Floats,
+    heading: Floats,
+    random: RandomStarts,
+    most: int,
 ) -> AssemblyComponent | None:
-    """The component to which a heading (1, columns) leads among some motions of first order
-    (columns, count), if it has as many dimensions as they are: where they are all, there is but
-    this one. None else."""
+    """The component to which a heading (1, columns) leads among some of the `most` motions of first
+    order (columns, count), if it has as many dimensions as they are: where they are all, there is
+    but this one. None else."""
     heading = _scaled(heading)
     for move in tolerances.MOBILITY_MOVES:
         moves = move[0] * np.concatenate([heading, -heading])
         ends, as_meant = _closed_as_meant(part, state, moves, move)
         for place in ends.states[as_meant]:
             try:
-                component = component_at(part, place, random, move)
+                component = component_at(part, place, random, move, most)
             except Unclear:
                 continue
             return component if component.dimension == motions.shape[1] else None
@@ -476,7 +496,7 @@ def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) 
         places = _onward(part, state, good, most, limit)
         doubt = Unclear("a second move does not close") if open_by < limit else None
         rest = _onward(part, state, good, len(good), limit)
-        return _components(part, state, lone, places, rest, random, move, doubt)
+        return _components(part, state, lone, places, rest, random, move, count, doubt)
 
     try:
         try:
@@ -502,11 +522,12 @@ def _components(
     rest: Floats,
     random: RandomStarts,
     move: Move,
+    most: int,
     doubt: Unclear | None,
 ) -> tuple[AssemblyComponent, ...]:
     """Components of some places (number, states), one of each dimension, the largest first; of the
     `rest` (number, states) those are looked at, too, to which no component found leads from `state`
-    but for motions that are `lone` (columns, count).
+    but for motions that are `lone` (columns, count); `most` as in `component_at`.
 
     Raises:
         Unclear: the last `doubt`, where none has a clear dimension.
@@ -514,7 +535,7 @@ def _components(
     found: list[AssemblyComponent] = []
     for place in places:
         try:
-            found.append(component_at(part, place, random, move))
+            found.append(component_at(part, place, random, move, most))
         except Unclear as unclear:
             doubt = unclear
     if doubt and not found:
@@ -534,7 +555,7 @@ def _components(
         furthest = int(np.argmax(off))
         off[furthest] = 0.0
         try:
-            found.append(component_at(part, rest[furthest], random, move))
+            found.append(component_at(part, rest[furthest], random, move, most))
         except Unclear:
             continue
     of = {

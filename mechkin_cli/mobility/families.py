@@ -41,6 +41,8 @@ from mechkin_cli.mobility.dimension import (
     LocalFreedom,
     freedom_of,
     general_places,
+    still_along,
+    usual,
 )
 from mechkin_cli.mobility.opened import rank_of
 from mechkin_cli.record import NamedTuple
@@ -116,7 +118,7 @@ def _free(
 
 def _rank(part: LoopPart, start: Floats, family: Places, columns: Sequence[int]) -> int:
     """How many rates of some columns are independent along a family; what rests has none."""
-    still = set(_still(part, start, family).values())
+    still = set(still_along(part, start, family).values())
     moving = [column for column in columns if column not in still]
     rank: int = max(one.rank_along(moving) for one in family)
     return rank
@@ -124,18 +126,25 @@ def _rank(part: LoopPart, start: Floats, family: Places, columns: Sequence[int])
 
 def _resting(body: Body, start: Floats, part: LoopPart, family: Places) -> list[str]:
     """Turns of links, coordinates of points and of joints that a family leaves where they are at
-    the start (states,); rods between spheres, which only hold others, are left out."""
+    the start (states,); rods between spheres, which only hold others, are left out, and links that
+    move by other parts, too."""
     mechanism = body.mechanism
     rods = {link for spin in mechanism.spins for link in spin.links}
-    links = [link for link in body.links if link not in rods and is_written(link)]
     before = Configuration(body, start)
+    outside = np.ones(body.count, dtype=np.bool_)
+    outside[part.columns] = False
+    links = [
+        link
+        for link in body.links
+        if link not in rods and is_written(link) and not before.twists[link][:, outside].any()
+    ]
     places = [Configuration(body, one.state) for one in family]
     turned = {
-        link: _usual([np.abs(p.poses[link][0] - before.poses[link][0]).max() for p in places])
+        link: usual([np.abs(p.poses[link][0] - before.poses[link][0]).max() for p in places])
         for link in links
     }
     shifted = {
-        name: _usual([np.abs(_spot(place, at) - _spot(before, at)) for place in places])
+        name: usual([np.abs(_spot(place, at) - _spot(before, at)) for place in places])
         for name, at in mechanism.points.items()
         if at.link in links
     }
@@ -148,14 +157,8 @@ def _resting(body: Body, start: Floats, part: LoopPart, family: Places) -> list[
         if part_of < least
     ]
     still = np.zeros(body.count, dtype=np.bool_)
-    still[list(_still(part, start, family))] = True
+    still[list(still_along(part, start, family))] = True
     return list(dict.fromkeys([*names, *body.coordinates(still)]))
-
-
-def _usual(sizes: Sequence[Floats] | Floats) -> Floats:
-    """The lower median of sizes (places, ...): next to where families cross a double root is known
-    to less than elsewhere."""
-    return np.asarray(np.sort(np.asarray(sizes), axis=0)[(len(sizes) - 1) // 2])
 
 
 def _spot(place: Configuration, at: Attached) -> Floats:
@@ -249,7 +252,7 @@ def _holds(
     coordinates are independent."""
     rows = motions[part.driven(body, problem.motion.driven)]
     left = motions @ rank_of(rows, tolerances.RANK_ZERO).motions
-    candidates = list(_candidates(problem, body, left, _still(part, state, family), alike))
+    candidates = list(_candidates(problem, body, left, still_along(part, state, family), alike))
     if not candidates or not left.size:
         return []
     known = {one.coordinate for one in alike}
@@ -265,15 +268,6 @@ def _holds(
         chosen.append(candidates[best][1])
         rates = rates @ rank_of(rates[[best]], tolerances.RANK_ZERO).motions
     return chosen
-
-
-def _still(part: LoopPart, state: Floats, family: Places) -> dict[int, int]:
-    """Columns of the whole that rest along a family, where the drawing has them, with their numbers
-    in the part."""
-    starts = np.repeat(state[None], len(family), axis=0)
-    steps = _usual(np.abs(part.steps(np.array([one.state for one in family]), starts)))
-    still = np.flatnonzero(steps < tolerances.MOBILITY_CHORD_DOUBT)
-    return {int(part.columns[k]): int(k) for k in still}
 
 
 def _candidates(

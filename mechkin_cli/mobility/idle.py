@@ -22,7 +22,7 @@ from mechkin_cli.idle import PLACES, LinkMotion, RigidGroup, held_groups
 from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import Joint, LockedFreedom, Mechanism, Problem, Vector
 from mechkin_cli.mobility.configurations import Body, Configuration, LoopPart, home
-from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of, relative_rates
+from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of, relative_rates, still_along
 from mechkin_cli.mobility.opened import rank_of
 from mechkin_cli.record import NamedTuple
 
@@ -89,7 +89,14 @@ class Motions:
         """Stresses (equations, redundant) at the general configuration."""
         jacobian = self.general.jacobian
         zero = tolerances.MOBILITY_RANK_REACHED
-        if all(part.stresses_in(jacobian, zero) == part.held for part in self.body.parts):
+        is_regular = True
+        for part, freedom in self.freedoms:
+            most = freedom.first.motions.shape[1]
+            rank = part.rank_reached(part.own(jacobian), most)
+            is_regular = is_regular and rank.stresses.shape[1] == part.held
+            if part.rank(part.own(jacobian), zero).motions.shape[1] > most:
+                zero = tolerances.RANK_ZERO
+        if is_regular:
             return np.zeros((len(jacobian), 0))
         if not self.body.mechanism.plane:
             return rank_of(jacobian, zero).stresses
@@ -138,6 +145,11 @@ class Motions:
             for component in freedom.every:
                 rates = np.abs(relative_rates(part, component)).max(axis=1, initial=0.0)
                 moving[part.columns] |= rates > max(component.doubt, tolerances.RANK_ZERO)
+            families = [family for family in freedom.families if family[0].dimension]
+            if len(families) > 1 or any(family[0].excess for family in families):
+                # next to where equations touch their solutions steps tell better than rates
+                along = [still_along(part, self.start.state, family) for family in families]
+                moving[list(set(along[0]).intersection(*along[1:]))] = False
         return self.body.coordinates(~moving)
 
 

@@ -714,3 +714,49 @@ responses: {r: {start: {A.theta: 0}, efforts: {A.theta: 1 N*m}, time: {from: 0, 
     assert "A.theta and B.theta are at limits" in told.message
     free = mk.loads(text.replace("{type: friction, joint: A, coefficient: 0.1, radius: 5 mm}", ""))
     assert not [d for d in free.respond("r").diagnostics if d.code == "impact-unresolved"]
+
+
+BOTH_HELD = """format: 1
+plane: xy
+units: {angle: rad}
+links:
+  b0: {mass: 1, center_of_mass: [-0.554, 0.65], inertia: 0.1}
+  b1: {mass: 1, center_of_mass: [-0.665, 0.791], inertia: 0.1}
+  b2: {mass: 1, center_of_mass: [-0.843, 0.987], inertia: 0.1}
+  b3: {mass: 1, center_of_mass: [0.315, 0.666], inertia: 0.1}
+  b4: {mass: 1, center_of_mass: [0.235, 0.429], inertia: 0.1}
+  b5: {mass: 1, center_of_mass: [0.007, 1.064], inertia: 0.1}
+  b6: {mass: 1, center_of_mass: [-0.118, 0.869], inertia: 0.1}
+joints:
+  A: {type: R, links: [ground, b0], point: [-0.585, 0.657]}
+  B: {type: R, links: [b1, b0], point: [-0.389, 0.917]}
+  C: {type: R, links: [b2, b1], point: [-0.877, 0.862]}
+  D: {type: R, links: [b0, b3], point: [-0.389, 0.917]}
+  E: {type: R, links: [b3, b4], point: [0.173, 0.451]}
+  F: {type: R, links: [ground, b4], point: [-0.701, 0.026]}
+  G: {type: R, links: [b5, b3], point: [0.173, 0.451]}
+  H: {type: R, links: [b6, b5], point: [-0.05, 1.016]}
+  K: {type: R, links: [b1, b6], point: [-0.877, 0.862]}
+loads:
+  - {type: gravity, g: [0, -9.81]}
+  - {type: damper, joint: F, coordinate: theta, damping: 0.8}
+responses:
+  r:
+    start: {A.theta: 0, C.theta: 0}
+    time: {from: 0, to: 1.5, step: 0.1}
+    driven: {B.theta: {law: sine, amplitude: 0.164, frequency: 1.342 Hz}}
+limits: {A.theta: {min: -1.1699, restitution: 0}, C.theta: {max: 0.702, restitution: 0}}
+"""
+
+
+def test_a_damper_that_stands_still_does_not_end_a_motion() -> None:
+    """All that is free rests at limits, a drive moves on, and what the damper takes is rounding."""
+    names = ["time", "A.theta", "B.theta", "C.theta", "F.theta_dot", "row.dissipated"]
+    rows = mk.loads(BOTH_HELD).respond("r", names)
+    assert rows.complete
+    driven = 0.164 * np.sin(2.0 * np.pi * 1.342 * rows["time"])
+    np.testing.assert_allclose(rows["B.theta"], driven, atol=1e-12)
+    held = (rows["A.theta"] < -1.1699 + 1e-9) & (rows["C.theta"] > 0.702 - 1e-9)
+    assert np.count_nonzero(held) > 3
+    assert np.abs(rows["F.theta_dot"][held]).max() < 1e-9
+    assert np.ptp(rows["row.dissipated"][held]) < 1e-9 * rows["row.dissipated"].max()

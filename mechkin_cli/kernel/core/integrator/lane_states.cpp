@@ -93,4 +93,11 @@ void LaneStates::error_scales(const double* a, const double* b, double* scale) c
     const double known = work[k - 2 * moved] > coming ? work[k - 2 * moved] : coming;
     scale[k] = tolerance * (larger > known ? larger : known);
   }
+  // where nothing is free no energy tells the size of works: by the largest of them what is lost where nothing moves is
+  // rounding
+  for (int i = 0; i < lanes && !freedoms; ++i) {
+    double most = 0.0;
+    for (int k = 0; k < motion.works(); ++k) most = std::max(most, scale[(long)k * lanes + i]);
+    for (int k = 0; k < motion.works(); ++k) scale[(long)k * lanes + i] = most;
+  }
 }
