@@ -9,13 +9,14 @@ Along a branch, `Stationary` finds the dead centres of outputs.
 
 from __future__ import annotations
 
-from math import isfinite, pi
+from math import isfinite, pi, sqrt
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mobility import lost_holds
 from mechkin_cli.plan import Demand, TrackEnd
 from mechkin_cli.record import NamedTuple, dataclass, field
@@ -105,15 +106,34 @@ class Walker:
         origin = float(self.inputs[self.number])
         start = origin, state
         upper, above = self._climb(start, 1.0, start)
+        beside = None if upper.kind != "branch-lost" or above else self._beside(state)
+        if beside is not None:
+            start = beside
+            upper, above = self._climb(start, 1.0, start, is_beside=True)
         if upper.kind == "full-turn":
             return [Branch(upper._replace(value=origin), upper, [start, *above])]
-        lower, below = self._climb(start, -1.0, start)
+        lower, below = self._climb(start, -1.0, start, is_beside=beside is not None)
         first = Branch(lower, upper, [*below[::-1], start, *above])
         onward, closed = self._walk(first, upper, 1.0)
         if closed:
             return [first, *onward]
         backward, _ = self._walk(first, lower, -1.0)
         return [first, *onward, *backward]
+
+    def _beside(self, state: Floats) -> Passage | None:
+        """A place next to an assembly that stands exactly at a dead centre, from which no step is
+        sure; None where none is found."""
+        random, origin = RandomStarts(), float(self.inputs[self.number])
+        for off in (tolerances.BESIDE_DEAD_CENTRE, -tolerances.BESIDE_DEAD_CENTRE):
+            # next to a dead centre places go with the root of the way to it
+            guess = state + random.between(sqrt(abs(off)), state.size)
+            rows = RowInputs(self.at(np.array([origin + off]))[0], guess[:, None])
+            batch = self.session.run(rows, Ask())
+            if batch.good[0] and self._is_same(
+                batch.states[:, 0], state, tolerances.MOST_BESIDE_DEAD_CENTRE
+            ):
+                return origin + off, np.ascontiguousarray(batch.states[:, 0])
+        return None
 
     def end(self, start: Passage, direction: float) -> End:
         """Where the branch through a place ends in a direction."""
@@ -149,13 +169,21 @@ class Walker:
         return [(value, followed.state)] if followed.end == TrackEnd.FINISHED else []
 
     def _climb(
-        self, start: Passage, direction: float, first: Passage | None
+        self,
+        start: Passage,
+        direction: float,
+        first: Passage | None,
+        *,
+        is_beside: bool = False,
     ) -> tuple[End, list[Passage]]:
-        """Follows a branch in a direction to its end; the places passed."""
+        """Follows a branch in a direction to its end; the places passed. From `beside` a dead
+        centre at the first value it goes on beyond that: no step ends in the dead centre itself."""
         value, state = start
         places: list[Passage] = []
         for _ in range(self.most):
             target = self._next(value, direction)
+            if is_beside and value == start[0] and target == self.inputs[self.number]:
+                target = self._next(target, direction)
             followed = self.follow(np.array([value, target]), state)
             if followed.end != TrackEnd.FINISHED:
                 limit = find_limit(self.session, followed)

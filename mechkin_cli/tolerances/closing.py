@@ -451,6 +451,14 @@ size)."""
 DEAD_CENTRE_ITERATIONS: Final = 40
 """Far more than quadratic convergence needs; a search that uses them all has found none."""
 
+BESIDE_DEAD_CENTRE: Final = 1e-6
+"""How far (rad, parts of the length) from an assembly that stands exactly at a dead centre a branch
+is looked for: its places are off by about the root, 1e-3, which double arithmetic resolves well."""
+
+MOST_BESIDE_DEAD_CENTRE: Final = 0.03
+"""How far (parts of the size, direction cosines) its pose is off at most: thirty such roots, so far
+less than where another assembly stands."""
+
 SAME_DEAD_CENTRE: Final = 1e-5
 """Two dead centres whose poses differ less are one: the states there are known to about 1e-8, the
 root of a rounding."""

@@ -188,7 +188,8 @@ class Vibration(Listed):
         # refuses what no force acts along, as a rate
         self._load(quantity)
         by_place = self._small.gradient(self._reader([quantity]))
-        moved = times(by_place, solved(self.stiffness, by_place.T))[0, 0]
+        with np.errstate(invalid="ignore", divide="ignore"):  # refused below
+            moved = times(by_place, solved(self.stiffness, by_place.T))[0, 0]
         if not np.isfinite(moved):
             raise UsageError("some mode has no stiffness")
         return float(1.0 / moved) if moved else float("inf")

@@ -202,3 +202,45 @@ def test_modes_next_to_a_dead_centre_share_a_circuit(before: float, side: int) -
     for item in swings:
         assert abs(item.lower.value - lower) < 1e-8
         assert abs(item.upper.value - upper) < 1e-8
+
+
+AT_DEAD_CENTRE = """format: 1
+plane: xy
+units: {{length: mm}}
+links: {{c: {{}}, d: {{}}, e: {{}}}}
+joints:
+  A: {{type: R, links: [ground, c], point: {a}}}
+  B: {{type: R, links: [c, d], point: {b}}}
+  C: {{type: R, links: [d, e], point: {c}}}
+  S: {{type: P, links: [ground, e], point: {c}, axis: {axis}}}
+motion: {{inputs: {{A.theta: {{values: [0, 5]}}}}}}
+"""
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.5, 2.0])
+@pytest.mark.parametrize(
+    ("a", "b", "c"),
+    [
+        ((-3, 34), (-6, -33), (43, -33)),
+        ((0, 0), (0, -1), (1, -1)),
+        ((0, 0), (-1, -1), (1, -1)),
+        ((0, 0), (-3, -4), (3, -4)),
+    ],
+)
+def test_a_range_begins_at_the_dead_centre_at_which_it_is_drawn(
+    a: tuple[int, int], b: tuple[int, int], c: tuple[int, int], turned: float
+) -> None:
+    """The rod stands square to the slide: the crank's pin may not come farther from it, and comes
+    back to this distance when the crank has turned by twice the angle to the normal."""
+
+    def at(x: float, y: float) -> list[float]:
+        cosine, sine = math.cos(turned), math.sin(turned)
+        return [cosine * x - sine * y, sine * x + cosine * y]
+
+    text = AT_DEAD_CENTRE.format(a=at(*a), b=at(*b), c=at(*c), axis=at(0, 1))
+    (item,) = mk.loads(text).ranges().ranges
+    x, y = b[0] - a[0], b[1] - a[1]
+    end = 2.0 * math.degrees(math.acos(x / math.hypot(x, y)))
+    assert (item.lower.kind, item.upper.kind) == ("dead-centre", "dead-centre")
+    assert item.lower.value == pytest.approx(0.0, abs=1e-9)
+    assert item.upper.value == pytest.approx(end, abs=1e-9)

@@ -185,11 +185,11 @@ def test_what_cannot_be_decided_is_told(monkeypatch: pytest.MonkeyPatch) -> None
     climb = Walker._climb
 
     def stuck(
-        walker: Walker, start: Passage, direction: float, first: Passage | None
+        walker: Walker, start: Passage, direction: float, first: Passage | None, **more: bool
     ) -> tuple[End, list[Passage]]:
         if first is None:
             return End("branch-lost", start[0]), []
-        return climb(walker, start, direction, first)
+        return climb(walker, start, direction, first, **more)
 
     swinging = next(one for one in map(bar, range(COUNT)) if not one.turns_fully)
     assert not mk.load(swinging.file()).ranges().diagnostics
