@@ -277,6 +277,9 @@ def component_at(
             if not _is_smooth(part, place, tangents, move, _frame(random, dimension)):
                 raise Unclear("several motions meet wherever it goes")
             if dimension == count:
+                is_short = move[0] < tolerances.MOBILITY_MOVES[0][0]
+                if is_short and ends.misses.max() > tolerances.MOBILITY_CLOSED_SURELY:
+                    raise Unclear(f"{move[0]:g} away the loops are open by {ends.misses.max():.2g}")
                 return AssemblyComponent(count, place, motions, tolerances.RANK_ZERO)
             doubt = tolerances.MOBILITY_CHORD_DOUBT
             return AssemblyComponent(dimension, place, tangents, doubt, count - dimension)
@@ -313,6 +316,8 @@ def _chords(part: LoopPart, place: Floats, ends: Closed, moves: Floats) -> tuple
     for some in np.split(chords, len(tolerances.MOBILITY_CHORDS)):
         _, values, right = np.linalg.svd(some, full_matrices=False)
         low, high = tolerances.MOBILITY_CHORD_RANK
+        if ends.misses.max() > tolerances.MOBILITY_CLOSED_SURELY:
+            high = tolerances.MOBILITY_CHORD_OPEN
         if np.any((values > low) & (values < high)):
             raise Unclear(f"chords have singular values between {low:g} and {high:g}")
         seen.append((int(np.count_nonzero(values >= high)), right))

@@ -122,6 +122,14 @@ MOBILITY_ASIDE: Final = 0.2
 """Sine of the angle between a heading and the steps along all components found above which it may
 lead to another: curvature turns it by 0.17 at most in what was measured."""
 
+MOBILITY_CLOSED_SURELY: Final = 1e-13
+"""Loops whose dimensions are exact close to 1e-15. Where they stay open by more, either dimensions
+are rounded, or equations touch in high order: these seem to hold over short moves."""
+
+MOBILITY_CHORD_OPEN: Final = 0.9
+"""A chord of loops that stay open by more counts only with this singular value: those of equations
+that touch in fourth order fall from 0.9995 to 0.88 where the move is three times as long."""
+
 MOBILITY_RANK_REACHED: Final = 1e-5
 """Singular values below this part of the largest count as zero at a configuration that was reached:
 where equations are squared its place is sure to 1e-7 only, and a regular one 0.1 from a singular
