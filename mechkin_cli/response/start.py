@@ -20,7 +20,7 @@ from mechkin_cli.sweep import lost_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import ResponseProblem, StartValue, Wanted
-    from mechkin_cli.show import Floats
+    from mechkin_cli.show import Bools, Floats
 
 
 class _UnitRates(NamedTuple):
@@ -85,8 +85,7 @@ def beginning(
     for number, (edge, freedom) in enumerate(session.graph.inputs):
         begin[layout.state(edge, freedom)] = session.inputs.values[number, 0]
     unit = _by_coordinates(session, state)
-    at_dead_centre = not unit.are_fixed
-    if at_dead_centre:
+    if not unit.are_fixed:
         unit = _by_directions(session, free, begin, count)
     if not unit.are_fixed:
         return Diagnostic(
@@ -97,7 +96,10 @@ def beginning(
             response.place,
             hint="start beside it",
         )
-    rates = _rates(session, response, state, unit, at_dead_centre=at_dead_centre)
+    if unit.session is session:
+        rates = _by_named(session, response, state, unit)
+    else:
+        rates = _at_dead_centre(session, response, unit)
     if isinstance(rates, Diagnostic):
         return rates
     first = np.zeros(unit.moved.shape[1])
@@ -106,48 +108,73 @@ def beginning(
     return Beginning(begin, first, unit.moved[:count])
 
 
-def _rates(
-    session: Session,
-    response: ResponseProblem,
-    state: Floats,
-    unit: _UnitRates,
-    *,
-    at_dead_centre: bool,
+def _by_named(
+    session: Session, response: ResponseProblem, state: Floats, unit: _UnitRates
 ) -> Floats | Diagnostic:
-    """Rates of all inputs in kernel units, or along directions that stand for the independent
-    ones: the driven ones by their laws, the others so that the coordinates named with a rate have
-    it."""
+    """Rates of all inputs in kernel units: the driven ones by their laws, the independent ones so
+    that the coordinates named with a rate have it."""
     rates: Floats = session.inputs.rates[:, 0].copy()
     independent = set(response.independent)
+    with_rate = [one for one in response.start if one.rate is not None]
+    if any((one.joint, one.coordinate) not in independent for one in with_rate):
+        return _solved(session, response, unit, rates, with_rate)
+    if not rates.any():
+        return rates
     # at its dead centre a coordinate has no rate: any other than zero means infinite ones of others
-    lost = np.zeros(rates.size, dtype=np.bool_)
-    if rates.any():
-        lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
+    lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
     # behind the inputs is what is held, at rest
     inputs = session.problem.motion.inputs
     named = [one.name for k, one in enumerate(inputs) if lost[k] and rates[k] != 0.0]
-    if named:
-        return Diagnostic(
-            "start-at-dead-centre",
-            "error",
-            f"the start is a dead centre of {', '.join(named)}: no rate of it is one of the "
-            "mechanism",
-            response.place,
-            hint="give the rate of a coordinate that moves there, or start beside it",
-        )
+    return _dead_centre_of(named, response) if named else rates
+
+
+def _at_dead_centre(
+    session: Session, response: ResponseProblem, unit: _UnitRates
+) -> Floats | Diagnostic:
+    """Rates along directions that stand for the independent coordinates, then of the driven ones:
+    what the start names without a rate rests."""
+    rates: Floats = session.inputs.rates[:, 0].copy()
+    free = len(response.independent)
     with_rate = [one for one in response.start if one.rate is not None]
-    if at_dead_centre:
-        still = [one for one in response.start if one.rate is None]
-        with_rate += still[: max(len(independent) - len(with_rate), 0)]
-        if not any(one.rate for one in with_rate):
-            rates[: len(independent)] = 0.0
-            return rates
-    elif all((one.joint, one.coordinate) in independent for one in with_rate):
+    if not any(one.rate for one in with_rate) and not rates[free:].any():
+        rates[:free] = 0.0
         return rates
-    return solve_rates(session, response, unit, rates, with_rate)
+    still = [one for one in response.start if one.rate is None]
+    every = [*with_rate, *still]
+    _, moves = _matrix(session, response, unit, every)
+    dead = [one.name for one, row in zip(every, moves, strict=True) if one.rate and not row.any()]
+    if dead:
+        return _dead_centre_of(dead, response)
+    # where rates are too few, what is named without one rests, but for what is at its dead centre
+    able = [one for one, row in zip(still, moves[len(with_rate) :], strict=True) if row.any()]
+    with_rate += able[: max(free - len(with_rate), 0)]
+    return _solved(session, response, unit, rates, with_rate)
 
 
-def solve_rates(
+def _dead_centre_of(names: Sequence[str], response: ResponseProblem) -> Diagnostic:
+    return Diagnostic(
+        "start-at-dead-centre",
+        "error",
+        f"the start is a dead centre of {', '.join(names)}: no rate of it is one of the mechanism",
+        response.place,
+        hint="give the rate of a coordinate that moves there, or start beside it",
+    )
+
+
+def _matrix(
+    session: Session, response: ResponseProblem, unit: _UnitRates, named: Sequence[StartValue]
+) -> tuple[Floats, Bools]:
+    """Rates of some coordinates in SI for unit rates (named, inputs), and which of the free ones
+    move them: what does not move in parts of what moves most has no rate but rounding."""
+    free, length = len(response.independent), session.layout.length
+    known = session.problem.quantities()
+    by_rate = unit.read([known[f"{one.name}{ORDERS[1]}"] for one in named])
+    largest = np.abs(unit.moved[:free]).max(axis=1)
+    units = np.array([1.0 if is_angle(one.coordinate) else length for one in named])
+    return by_rate, np.abs(by_rate[:, :free]) > tolerances.RANK_ZERO * units[:, None] * largest
+
+
+def _solved(
     session: Session,
     response: ResponseProblem,
     unit: _UnitRates,
@@ -159,16 +186,11 @@ def solve_rates(
     Linear in the independent rates: the named rates are read at unit rates of one input after the
     other. `rates` holds those of the driven inputs behind the independent ones.
     """
-    free, length = len(response.independent), session.layout.length
-    known = session.problem.quantities()
-    by_rate = unit.read([known[f"{one.name}{ORDERS[1]}"] for one in with_rate])
+    free = len(response.independent)
+    by_rate, moves = _matrix(session, response, unit, with_rate)
     right = np.array([one.rate or 0.0 for one in with_rate])
     for number in range(free, len(rates)):
         right = right - by_rate[:, number] * rates[number]
-    # what does not move in parts of what moves most has no rate but rounding
-    largest = np.abs(unit.moved[:free]).max(axis=1)
-    units = np.array([1.0 if is_angle(one.coordinate) else length for one in with_rate])
-    moves = np.abs(by_rate[:, :free]) > tolerances.RANK_ZERO * units[:, None] * largest
     solved = None
     if len(with_rate) == free:
         matrix = np.where(moves, by_rate[:, :free], 0.0)

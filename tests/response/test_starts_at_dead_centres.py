@@ -120,6 +120,55 @@ def test_a_place_may_be_named_by_what_is_at_a_dead_centre_there(
         np.testing.assert_allclose(one[name], other[name], atol=1e-9)
 
 
+BESIDE = IN_LINE.replace(
+    "joints:\n",
+    """  p: {mass: 1, center_of_mass: [3, -1], inertia: 0.1}
+joints:
+  P: {type: R, links: [ground, p], point: [3, 0]}
+""",
+)
+DRIVEN = BESIDE.replace("start: START,", "start: START, driven: {P.theta: LAW},")
+DRIVEN = DRIVEN.replace("LAW", "{law: sine, amplitude: 0.5, frequency: 1 Hz}")
+
+
+@pytest.mark.parametrize(
+    ("start", "same"),
+    [
+        (
+            "{P.theta: 0, A.theta: 0, P.theta_dot: 1, D.theta_dot: 1}",
+            "{P.theta: 0, D.theta: 0, P.theta_dot: 1, D.theta_dot: 1}",
+        ),
+        ("{P.theta: 0, A.theta: 0, P.theta_dot: 1, A.theta_dot: 0}", ""),
+    ],
+)
+def test_others_have_their_rates_beside_a_dead_centre(start: str, same: str) -> None:
+    """A pendulum beside the four-bar; with its rate alone it is not told how the bars move."""
+    names = ["P.theta_dot", "A.theta", "D.theta", "D.theta_dot"]
+    one = mk.loads(BESIDE.replace("START", start)).respond("r", names)
+    if not same:
+        (said,) = [each for each in one.diagnostics if each.severity == "error"]
+        assert said.code == "start-rates"
+        return
+    other = mk.loads(BESIDE.replace("START", same)).respond("r", names)
+    assert one.complete
+    for name in names:
+        np.testing.assert_allclose(one[name], other[name], atol=1e-9)
+
+
+def test_drives_move_beside_a_dead_centre() -> None:
+    names = ["P.theta_dot", "A.theta", "D.theta", "D.theta_dot"]
+    one, other = (
+        mk.loads(DRIVEN.replace("START", start)).respond("r", names)
+        for start in ("{A.theta: 0, D.theta_dot: 1}", "{D.theta: 0, D.theta_dot: 1}")
+    )
+    assert one.complete
+    for name in names:
+        np.testing.assert_allclose(one[name], other[name], atol=1e-9)
+    unfixed = mk.loads(DRIVEN.replace("START", "{A.theta: 0}")).respond("r", names)
+    (said,) = [each for each in unfixed.diagnostics if each.severity == "error"]
+    assert said.code == "start-rates"
+
+
 @pytest.mark.parametrize("rate", ["", ", A.theta_dot: 1"])
 def test_a_start_in_a_branch_point_is_named(rate: str) -> None:
     flat = IN_LINE.replace("[0.25, 0.5]", "[0.25, 0]").replace("[0.75, 0.25]", "[1.5, 0]")
