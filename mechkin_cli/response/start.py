@@ -41,8 +41,8 @@ class _UnitRates(NamedTuple):
 
     @property
     def are_fixed(self) -> bool:
-        """Whether the place has them."""
-        return bool(np.isfinite(self.moved).all())
+        """Whether the place has them, beyond rounding."""
+        return bool(np.all(np.abs(self.moved) < 1.0 / tolerances.RANK_ZERO))
 
     def read(self, wanted: Sequence[Wanted]) -> Floats:
         """Some rates in SI (wanted, directions and coordinates)."""
@@ -85,8 +85,10 @@ def beginning(
     for number, (edge, freedom) in enumerate(session.graph.inputs):
         begin[layout.state(edge, freedom)] = session.inputs.values[number, 0]
     unit = _by_coordinates(session, state)
-    if not unit.are_fixed:
-        unit = _by_directions(session, free, begin, count)
+    if not unit.are_fixed or session.is_redundant:
+        others = _by_directions(session, free, begin, count)
+        if not unit.are_fixed or (others.are_fixed and _is_dead_centre(session, response, others)):
+            unit = others
     if not unit.are_fixed:
         return Diagnostic(
             "start-at-dead-centre",
@@ -106,6 +108,16 @@ def beginning(
     for rate, row in zip(rates, unit.moved, strict=True):
         first = first + rate * row
     return Beginning(begin, first, unit.moved[:count])
+
+
+def _is_dead_centre(session: Session, response: ResponseProblem, unit: _UnitRates) -> bool:
+    """Whether independent coordinates do not tell how it moves along the directions. Where
+    constraints are redundant, rates by these coordinates are least squares, and finite there."""
+    independent = set(response.independent)
+    named = [one for one in response.start if (one.joint, one.coordinate) in independent]
+    by_rate, moves = _matrix(session, response, unit, named)
+    matrix = np.where(moves, by_rate[:, : len(named)], 0.0)
+    return eliminated(matrix.tolist(), [0.0] * len(named), tolerances.RANK_ZERO) is None
 
 
 def _by_named(

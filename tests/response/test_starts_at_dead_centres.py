@@ -196,3 +196,47 @@ def test_a_rate_of_what_never_moves_fixes_nothing() -> None:
     )
     (said,) = [each for each in rows.diagnostics if each.severity == "error"]
     assert said.code == "start-rates"
+
+
+IN_SPACE = """format: 1
+units: {length: m, angle: rad}
+links:
+  crank: {mass: 1, center_of_mass: [0.1, 0.1, 0.1], inertia: {xx: 1, yy: 1, zz: 1}}
+  rod: {mass: 1, center_of_mass: [0.1, 0.1, 0.1], inertia: {xx: 1, yy: 1, zz: 1}}
+  slider: {mass: 1, center_of_mass: [0.1, 0.1, 0.1]}
+joints:
+JOINTS
+loads: [{type: gravity, g: [1, 2, -9]}]
+responses:
+  r: {start: START, time: {from: 0, to: 0.02, step: 0.01}, tolerance: 1e-12}
+"""
+ALONG = {"[1, 2, 2]": (2, -2, 1), "[2, -1, 2]": (2, 2, -1), "[-2, 2, 1]": (1, 2, -2)}
+
+
+@pytest.mark.parametrize("axis", ALONG)
+@pytest.mark.parametrize("order", range(4))
+@pytest.mark.parametrize("rate", [0.0, 1.0, 0.42])
+def test_least_squares_of_redundant_constraints_are_no_rates(
+    axis: str, order: int, rate: float
+) -> None:
+    """A slider-crank in space at its dead centre: rates of the others for one of its slide are
+    rounding there, but finite."""
+    along = ALONG[axis]
+    one, two = ([part * x for x in along] for part in (0.1, 0.3))
+    joints = [
+        f"  A: {{type: R, links: [ground, crank], point: [0, 0, 0], axis: {axis}}}",
+        f"  B: {{type: R, links: [crank, rod], point: {one}, axis: {axis}}}",
+        f"  C: {{type: R, links: [rod, slider], point: {two}, axis: {axis}}}",
+        f"  D: {{type: P, links: [ground, slider], point: {two}, axis: {list(along)}}}",
+    ]
+    text = IN_SPACE.replace("JOINTS", "\n".join(joints[order:] + joints[:order]))
+    names = ["A.theta", "A.theta_dot", "D.s", "D.s_dot"]
+    one_way, other = (
+        mk.loads(text.replace("START", f"{{{place}: 0, A.theta_dot: {rate} rad/s}}")).respond(
+            "r", names
+        )
+        for place in ("D.s", "A.theta")
+    )
+    assert one_way.complete
+    for name in names:
+        np.testing.assert_allclose(one_way[name], other[name], atol=1e-9)
