@@ -123,16 +123,17 @@ class Walker:
     def _beside(self, state: Floats) -> Passage | None:
         """A place next to an assembly that stands exactly at a dead centre, from which no step is
         sure; None where none is found."""
-        random, origin = RandomStarts(), float(self.inputs[self.number])
-        for off in (tolerances.BESIDE_DEAD_CENTRE, -tolerances.BESIDE_DEAD_CENTRE):
-            # next to a dead centre places go with the root of the way to it
-            guess = state + random.between(sqrt(abs(off)), state.size)
-            rows = RowInputs(self.at(np.array([origin + off]))[0], guess[:, None])
-            batch = self.session.run(rows, Ask())
-            if batch.good[0] and self._is_same(
-                batch.states[:, 0], state, tolerances.MOST_BESIDE_DEAD_CENTRE
-            ):
-                return origin + off, np.ascontiguousarray(batch.states[:, 0])
+        origin, off = float(self.inputs[self.number]), tolerances.BESIDE_DEAD_CENTRE
+        # next to a dead centre places go with the root of the way to it
+        sizes = sqrt(off) * np.array(tolerances.BESIDE_DEAD_CENTRE_GUESSES)
+        values = origin + np.repeat([off, -off], sizes.size)
+        moves = RandomStarts().between(1.0, state.size * values.size).reshape(state.size, -1)
+        guesses = state[:, None] + np.tile(sizes, 2) * moves
+        batch = self.session.run(RowInputs(self.at(values)[0], guesses), Ask())
+        for k in np.flatnonzero(batch.good):
+            found = np.ascontiguousarray(batch.states[:, k])
+            if self._is_same(found, state, tolerances.MOST_BESIDE_DEAD_CENTRE):
+                return float(values[k]), found
         return None
 
     def end(self, start: Passage, direction: float) -> End:

@@ -88,11 +88,16 @@ def at_jump(chosen: Session, response: ResponseProblem, moved: MotionRows) -> Mo
 
 
 def before_jump(response: ResponseProblem, moved: MotionRows) -> MotionRows:
-    """A motion that has come to a jump of a slope as one that cannot go on, without a row there;
-    else the motion itself."""
+    """A motion that has come to a jump of a slope as one that cannot go on, without a row there, as
+    the rates of no side are its own; else the motion itself."""
     report = moved.report
     if report.end is not MotionEnd.STOPPED or not isinstance(response.stops[report.stop], SlopeEnd):
         return moved
+    rows = report.rows
+    if rows:
+        row = float(response.moments.part(slice(rows - 1, rows)).values[0])
+        rows -= abs(report.time - row) <= tolerances.SAME_MOMENT * abs(row)
     states = moved.states.copy()
-    states[:, report.rows - report.first :] = nan
-    return replace(moved, report=report._replace(end=MotionEnd.STUCK), states=states)
+    states[:, max(rows - report.first, 0) :] = nan
+    report = report._replace(end=MotionEnd.STUCK, rows=rows)
+    return replace(moved, report=report, states=states)

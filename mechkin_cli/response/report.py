@@ -123,7 +123,8 @@ class MotionRows:
     def count(self) -> int:
         """Rows that there are: those that were reached, and one where a stop lies between rows."""
         held = self.report.rows - self.report.first
-        return self.report.rows + bool(np.isfinite(self.states[:1, held]).all())
+        behind = self.states[:1, held : held + 1]
+        return self.report.rows + bool(behind.size and np.isfinite(behind).all())
 
 
 def motion_of(report: MotionReport, arrays: Sequence[NDArray[Any]]) -> MotionRows:

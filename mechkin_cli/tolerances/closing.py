@@ -455,6 +455,10 @@ BESIDE_DEAD_CENTRE: Final = 1e-6
 """How far (rad, parts of the length) from an assembly that stands exactly at a dead centre a branch
 is looked for: its places are off by about the root, 1e-3, which double arithmetic resolves well."""
 
+BESIDE_DEAD_CENTRE_GUESSES: Final = (1.0, 1.0, 3.0, 3.0, 3.0, 10.0, 10.0, 10.0)
+"""Sizes of the random moves from it, in roots of that way, from which the branch is looked for: its
+places are off by about one, or by several where links are long."""
+
 MOST_BESIDE_DEAD_CENTRE: Final = 0.03
 """How far (parts of the size, direction cosines) its pose is off at most: thirty such roots, so far
 less than where another assembly stands."""

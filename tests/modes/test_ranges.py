@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
 import pytest
@@ -244,3 +245,47 @@ def test_a_range_begins_at_the_dead_centre_at_which_it_is_drawn(
     assert (item.lower.kind, item.upper.kind) == ("dead-centre", "dead-centre")
     assert item.lower.value == pytest.approx(0.0, abs=1e-9)
     assert item.upper.value == pytest.approx(end, abs=1e-9)
+
+
+STRETCHED = """format: 1
+plane: xy
+units: {{length: mm, angle: rad}}
+links: {{a: {{}}, b: {{}}, c: {{}}}}
+joints:
+  A: {{type: R, links: [ground, a], point: {points[0]}}}
+  B: {{type: R, links: [a, b], point: {points[1]}}}
+  C: {{type: R, links: [b, c], point: {points[2]}}}
+  D: {{type: R, links: [ground, c], point: {points[3]}}}
+motion: {{inputs: {{A.theta: {{values: [0, 0.01]}}}}}}
+"""
+
+
+@pytest.mark.parametrize("shift", [0, 1])
+@pytest.mark.parametrize(
+    "points",
+    [
+        [(-1, -1), (-4, 5), (-6, 6), (-8, 7)],
+        [(0, 0), (0, 4), (2, 3), (6, 1)],
+        [(0, 0), (0, 3), (4, 3), (10, 3)],
+        [(0, 0), (10, 40), (26, 28), (42, 16)],
+    ],
+)
+def test_a_range_begins_where_two_bars_are_drawn_in_line(
+    points: list[tuple[int, int]], shift: int
+) -> None:
+    """Stretched: the crank comes back to this distance on the other side of the frame, unless the
+    bars fold before."""
+    moved = [[x + shift, y + shift] for x, y in points]
+    found = mk.loads(STRETCHED.format(points=moved)).ranges()
+    a, b, c, d = (complex(*point) for point in points)
+    width = 2.0 * abs(cmath.phase((b - a) / (d - a)))
+    crank, frame, folded = abs(b - a), abs(d - a), abs(abs(c - b) - abs(d - c))
+    if folded > abs(frame - crank):
+        cosine = (crank**2 + frame**2 - folded**2) / (2.0 * crank * frame)
+        width = width / 2.0 - math.acos(cosine)
+    for item in found.ranges:
+        assert (item.lower.kind, item.upper.kind) == ("dead-centre", "dead-centre")
+        ends = item.lower.value, item.upper.value
+        assert min(map(abs, ends)) < 1e-12
+        assert ends[1] - ends[0] == pytest.approx(width, abs=1e-12)
+    assert len(found.circuits) == 1

@@ -133,6 +133,13 @@ TEXTS = {
     "rows that are not reached": LOST,
     "redundant constraints": REDUNDANT,
     "a slope that jumps": BENT,
+    # a row at the jump; and thrown up from it, back to it in the first row of a block of 10
+    "a slope that jumps at a row": BENT.replace(
+        "{A.theta: -1, A.theta_dot: 1}", "{A.theta: -0.9, A.theta_dot: 1}"
+    ).replace("value: 1}]\n", "value: 0}]\n"),
+    "a slope that jumps at a border": BENT.replace(
+        "{A.theta: -1, A.theta_dot: 1}", "{A.theta: 0.1, A.theta_dot: 0.5}"
+    ).replace("value: 1}]\n", "value: -1.045}]\n"),
     "a slope that would jump later": BENT.replace("0.1 rad", "9 rad"),
     "a limit": LIMITED,
     "a limit at the start": LIMITED.replace("max: 1.5", "max: 1").replace(
