@@ -120,6 +120,11 @@ class ExactRecorder(Recorder):
                 self.exact[number] = self.exact[register]
         return self._doubles[register, other]
 
+    def without_zero(self, number: Traced) -> float | Traced:
+        """As `Recorder.without_zero`: of one that is zero in the text."""
+        value = self.values[number.register]
+        return value if value == 0.0 and self.exact.get(number.register) == 0 else number
+
     def origin(self, register: int) -> int:
         """The register from which `with_double` made this one, or its operands; else itself."""
         return self._origin.get(register, register)

@@ -181,8 +181,13 @@ class JetNumber(Recorded):
 
 
 def orders_of(value: Any) -> tuple[Any, Any, Any, Any]:
-    """The orders of a jet, or of a number that does not move."""
-    return value.orders if isinstance(value, JetNumber) else (value, 0.0, 0.0, 0.0)
+    """The orders of a jet, or of a number that does not move; a zero of the text is that of
+    doubles, so that what is left out with it is left out of exact numbers, too."""
+    if isinstance(value, JetNumber):
+        return value.orders
+    if isinstance(value, Traced):
+        value = value.recorder.without_zero(value)
+    return value, 0.0, 0.0, 0.0
 
 
 def _is_zero(value: Any) -> bool:
