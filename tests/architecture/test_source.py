@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import doctest
+import subprocess
 from importlib import import_module
 from pathlib import Path
 
@@ -26,6 +27,23 @@ def public_definitions(body: list[ast.stmt], owner: str = "") -> list[tuple[str,
             if isinstance(node, ast.ClassDef):
                 found.extend(public_definitions(node.body, f"{node.name}."))
     return found
+
+
+BINARY = {"docs/view.png", "mechkin_cli/kernel/wasm/mechkin.wasm.gz"}
+EMPTY = {"__init__.py", "py.typed", ".gitkeep"}
+
+
+@pytest.mark.skipif(not (ROOT.parent / ".git").exists(), reason="no repository")
+def test_nothing_that_is_built_or_empty_is_kept() -> None:
+    """A kernel under another name would be packed into the wheel."""
+    command = ["git", "-C", str(ROOT.parent), "ls-files", "-z"]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    files = {name: ROOT.parent / name for name in listed.split("\0") if name}
+    assert files
+    kept = {name: path.read_bytes() for name, path in files.items() if path.is_file()}
+    assert {name for name, content in kept.items() if b"\0" in content} == BINARY
+    empty = {name for name, content in kept.items() if not content}
+    assert {name for name in empty if files[name].name not in EMPTY} == set()
 
 
 @of_every(FILES)
