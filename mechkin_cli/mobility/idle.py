@@ -91,11 +91,11 @@ class Motions:
         zero = tolerances.MOBILITY_RANK_REACHED
         is_regular = True
         for part, freedom in self.freedoms:
-            most = freedom.first.motions.shape[1]
-            rank = part.rank_reached(part.own(jacobian), most)
-            is_regular = is_regular and rank.stresses.shape[1] == part.held
-            if part.rank(part.own(jacobian), zero).motions.shape[1] > most:
+            rank = part.rank(part.own(jacobian), tolerances.MOBILITY_RANK_REACHED)
+            if rank.motions.shape[1] > freedom.first.motions.shape[1]:  # as `rank_reached`
                 zero = tolerances.RANK_ZERO
+                rank = part.rank(part.own(jacobian), zero)
+            is_regular = is_regular and rank.stresses.shape[1] == part.held
         if is_regular:
             return np.zeros((len(jacobian), 0))
         if not self.body.mechanism.plane:

@@ -177,8 +177,8 @@ class Walker:
         *,
         is_beside: bool = False,
     ) -> tuple[End, list[Passage]]:
-        """Follows a branch in a direction to its end; the places passed. From `beside` a dead
-        centre at the first value it goes on beyond that: no step ends in the dead centre itself."""
+        """Follows a branch in a direction to its end; the places passed. From
+        beside a dead centre at the first value it goes on beyond that: no step ends in it."""
         value, state = start
         places: list[Passage] = []
         for _ in range(self.most):

@@ -9,7 +9,7 @@ its last row alone: where they are wanted before, the motion is gone through twi
 from __future__ import annotations
 
 import atexit
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from queue import SimpleQueue
 from threading import Semaphore, Thread
@@ -145,10 +145,7 @@ class ResponseBlocks:
         passed = BendsPassed(one.free.problem)
         if not passed.bends or not self.in_blocks:
             return one
-        for rows in self._ahead(one):
-            end, result = rows
-            if result is not None:
-                passed.add(result)
+        end = self._go_through(one, passed.add)
         return ended_at_jumps(one, passed, end.report)
 
     def _end_at(self, motion: MotionRows) -> RunEnd:
@@ -178,23 +175,26 @@ class ResponseBlocks:
     def _whole(self) -> _Whole:
         """How the motion ends, and its energies."""
         energies: Energies | None = None
-        for rows in self._ahead(self._one):
-            end, result = rows
-            if result is not None:
-                read(result, ())
-                energies = result.energies_with(energies)
+
+        def add(result: ResponseResult) -> None:
+            nonlocal energies
+            read(result, ())
+            energies = result.energies_with(energies)
+
+        end = self._go_through(self._one, add)
         return _Whole(end, energies and energies.between(end.report, self._one.free.layout.length))
 
-    def _ahead(self, one: Prepared) -> Iterator[tuple[RunEnd, ResponseResult | None]]:
-        """A motion gone through to tell what is known behind its last row: its end, as far as its
-        rows so far tell, and the last of these, before anything is read; None without any."""
+    def _go_through(self, one: Prepared, add: Callable[[ResponseResult], None]) -> RunEnd:
+        """The end of a motion; `add` takes its rows block by block, before anything is read."""
         every, done = one.response.rows, 0
         for motion in self._marched(one):
             report = motion.report
             end = run_end(one, report, motion.count if report.is_over else every)
             count = min(motion.states.shape[1], end.rows - done)
-            yield end, block_of(one, motion, end, Span(done, count, every)) if count > 0 else None
+            if count > 0:
+                add(block_of(one, motion, end, Span(done, count, every)))
             done += count
+        return end
 
     @property
     def energy_error(self) -> float:

@@ -56,8 +56,9 @@ class BendsPassed:
     ) -> list[SlopeEnd]:
         """The places at which slopes jump, in what the motion has passed, and somewhat beyond."""
         ends: list[SlopeEnd] = []
-        for bend in [*self._passed] if report is not None else ():
-            assert report is not None
+        if report is None:
+            return ends
+        for bend in [*self._passed]:
             self._add(bend, np.array([value_at(chosen, bend.name, np.array(report.last))]))
             least, most, _, way = self._passed[bend]
             slack = tolerances.SLOPE_RANGE + way

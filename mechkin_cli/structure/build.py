@@ -119,7 +119,7 @@ def lay_blocks(
     laid: list[tuple[Constraint, Loop]] = []
     blocks: list[Block] = []
     carrier = {edge.child: k for k, edge in enumerate(edges)}
-    open_: set[int] = set()  # tree edges that the loops of a later part place
+    unplaced: set[int] = set()  # tree edges that the loops of a later part place
 
     def passed(part: Sequence[Subgraph]) -> set[int]:
         names = [c.name for group in part for c in group.connections if c.name in closings]
@@ -127,18 +127,18 @@ def lay_blocks(
 
     def hangs(part: Sequence[Subgraph]) -> bool:
         own = passed(part)
-        return not open_.isdisjoint(_carrying(edges, own) - own)
+        return not unplaced.isdisjoint(_carrying(edges, own) - own)
 
     waiting = list(order)
     while waiting:
         # what hangs on such an edge waits for it
-        ready = (k for k, one in enumerate(waiting) if not open_ or not hangs(one))
+        ready = (k for k, one in enumerate(waiting) if not unplaced or not hangs(one))
         part = waiting.pop(next(ready, 0))
         connections = [c for group in part for c in group.connections]
         names = sorted((c.name for c in connections if c.name in closings), key=place.__getitem__)
         if not names:
             links = [link for group in part for link in group.links if link in carrier]
-            open_ |= {
+            unplaced |= {
                 k
                 for k in (carrier[link] for link in links)
                 if any((k, f) not in solved for f in range(edges[k].freedoms))
@@ -146,7 +146,7 @@ def lay_blocks(
             continue
         some = [closings[name] for name in names]
         members = sorted(passed(part))
-        open_ -= set(members)
+        unplaced -= set(members)
         freedoms = [(k, f) for k in members for f in range(edges[k].freedoms)]
         unknowns = tuple(freedom for freedom in freedoms if freedom not in solved)
         equations = sum(closing.equations for closing, _ in some)
