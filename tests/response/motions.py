@@ -14,6 +14,22 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 ENERGY = 1e-11
 """Limit of `row.energy_error`."""
 
+PLANAR = """format: 1
+links:
+  crank: {mass: 1, center_of_mass: [0.05, 0.1, 0], inertia: {zz: 0.01}}
+  coupler: {mass: 2, center_of_mass: [0.3, 0.3, 0], inertia: {zz: 0.05}}
+  rocker: {mass: 1, center_of_mass: [0.7, 0.2, 0], inertia: {zz: 0.02}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [crank, coupler], point: [0.05, 0.2, 0], axis: [0, 0, 1]}
+  C: {type: R, links: [coupler, rocker], point: [0.65, 0.4, 0], axis: [0, 0, 1]}
+  D: {type: R, links: [ground, rocker], point: [0.75, 0, 0], axis: [0, 0, 1]}
+loads:
+  - {type: gravity, g: [0, -9.81, 0]}
+  - LOAD
+"""
+"""A four-bar in space whose pins are parallel, so that constraints are redundant."""
+
 
 def respond(text: str, name: str = "run", *, ends: str = "ok", energy: float = ENERGY) -> Any:
     """The response of a text, whose rows are all `ok` but a last one that ends otherwise."""

@@ -65,7 +65,7 @@ def test_just_beside_it_is_no_dead_centre() -> None:
     assert r["row.status"][0] == "ok"
 
 
-IN_LINE = """format: 1
+FALLING = """format: 1
 plane: xy
 links:
   a: {mass: 1, center_of_mass: [0.2, 0.2], inertia: 0.1}
@@ -73,28 +73,26 @@ links:
   c: {mass: 1, center_of_mass: [1, 0.1], inertia: 0.1}
 joints:
   A: {type: R, links: [ground, a], point: [0, 0]}
-  B: {type: R, links: [a, b], point: [0.25, 0.5]}
-  C: {type: R, links: [b, c], point: [0.75, 0.25]}
-  D: {type: R, links: [ground, c], point: [1.25, 0]}
+  B: {type: R, links: [a, b], point: BPLACE}
+  C: {type: R, links: [b, c], point: CPLACE}
+  D: {DJOINT}
 loads: [{type: gravity, g: [0, -9.81]}]
 responses:
   r: {start: START, time: {from: 0, to: 0.2, step: 0.1}, tolerance: 1e-12}
 """
-SLIDER = """format: 1
-plane: xy
-links:
-  crank: {mass: 1, center_of_mass: [0.25, 0], inertia: 0.1}
-  rod: {mass: 1, center_of_mass: [1, 0], inertia: 0.1}
-  slider: {mass: 1, center_of_mass: [1.5, 0], inertia: 0.1}
-joints:
-  A: {type: R, links: [ground, crank], point: [0, 0]}
-  B: {type: R, links: [crank, rod], point: [0.5, 0]}
-  C: {type: R, links: [rod, slider], point: [1.5, 0]}
-  D: {type: P, links: [ground, slider], point: [1.5, 0], axis: [1, 0]}
-loads: [{type: gravity, g: [0, -9.81]}]
-responses:
-  r: {start: START, time: {from: 0, to: 0.2, step: 0.1}, tolerance: 1e-12}
-"""
+
+
+def falling(second: str, third: str, last: str) -> str:
+    """Three links that fall, with two of their joints at some places and a last one to ground."""
+    text = FALLING.replace("BPLACE", second).replace("CPLACE", third)
+    return text.replace("DJOINT", last)
+
+
+PIN = "type: R, links: [ground, c], point: [1.25, 0]"
+IN_LINE = falling("[0.25, 0.5]", "[0.75, 0.25]", PIN)
+SLIDER = falling(
+    "[0.5, 0]", "[1.5, 0]", "type: P, links: [ground, c], point: [1.5, 0], axis: [1, 0]"
+)
 
 
 @pytest.mark.parametrize(

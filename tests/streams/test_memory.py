@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from streams.motions import BENT, REDUNDANT
 
 FOUR_BAR = """format: 1
 plane: xy
@@ -43,36 +44,6 @@ loads:
 balances: [{{name: work, type: work}}]
 tables: [{{name: t, columns: [row.work, row.dissipated, row.energy_error], summary: [max]}}]
 """
-LOOP = """format: 1
-links:
-  crank: {{mass: 1, center_of_mass: [0.05, 0.1, 0], inertia: {{zz: 0.01}}}}
-  coupler: {{mass: 2, center_of_mass: [0.3, 0.3, 0.1], inertia: {{zz: 0.05}}}}
-  rocker: {{mass: 1, center_of_mass: [0.7, 0.2, 0], inertia: {{zz: 0.02}}}}
-joints:
-  A: {{type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}}
-  B: {{type: R, links: [crank, coupler], point: [0.05, 0.2, 0], axis: [0, 0, 1]}}
-  C: {{type: R, links: [coupler, rocker], point: [0.65, 0.4, 0], axis: [0, 0, 1]}}
-  D: {{type: R, links: [ground, rocker], point: [0.75, 0, 0], axis: [0, 0, 1]}}
-loads: [{{type: gravity, g: [0, -9.81, 0]}}]
-responses:
-  run: {{start: {{A.theta: 0, A.theta_dot: 3 rad/s}}, time: {{from: 0, to: 2, count: {count}}}}}
-tables: [{{name: t, run: run, columns: [D.theta, B.force.x, B.force.z], summary: [max, mean]}}]
-"""
-BENT = """format: 1
-plane: xy
-units: {{length: m, angle: rad}}
-links:
-  wheel: {{mass: 1, center_of_mass: [0, 0], inertia: 0.5}}
-  slide: {{mass: 1, center_of_mass: [0, 0]}}
-joints:
-  A: {{type: R, links: [ground, wheel], point: [0, 0]}}
-  B: {{type: P, links: [ground, slide], point: [0, 0], axis: [1, 0]}}
-couplings:
-  K: {{type: function, of: A.theta, gives: B.s, value: "0.3 m/rad*abs(theta - 9 rad)"}}
-loads: [{{type: torque, joint: A, value: 1}}]
-responses: {{r: {{start: {{A.theta: -1}}, time: {{from: 0, to: 2, count: {count}}}}}}}
-tables: [{{name: t, run: r, columns: [B.s], summary: [max, mean]}}]
-"""
 CHILD = """
 import resource, sys
 limit = int(sys.argv[1])
@@ -91,13 +62,13 @@ print(*[words[1] for words in lines if words[0] in ("VmPeak:", "VmHWM:")])
 
 def peak_of(folder: Path, count: int, limit: int = 0) -> int:
     """Peak of the address space in bytes of a process that sums up so many rows."""
-    return peaks_of(folder, count, limit)[0]
+    return peaks_of(folder, FOUR_BAR.format(count=count), limit)[0]
 
 
-def peaks_of(folder: Path, count: int, limit: int, text: str = FOUR_BAR) -> tuple[int, int]:
-    """The same, and that of what is in memory."""
-    path = folder / f"{count}.yaml"
-    path.write_text(text.format(count=count))
+def peaks_of(folder: Path, text: str, limit: int = 0) -> tuple[int, int]:
+    """The same of a file, and that of what is in memory."""
+    path = folder / "run.yaml"
+    path.write_text(text)
     options = ["--summary-only", "--quiet", "--threads", "1", "--out", str(folder / "out")]
     found = subprocess.run(
         [sys.executable, "-P", "-c", CHILD, str(limit), "analyze", str(path), *options],
@@ -126,21 +97,28 @@ def test_the_limit_is_one(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_responses_hold_no_moments(tmp_path: Path) -> None:
-    few, many = (peaks_of(tmp_path, count, 0, PENDULUM)[1] for count in (200_000, 4_000_000))
+    few, many = (
+        peaks_of(tmp_path, PENDULUM.format(count=count))[1] for count in (200_000, 4_000_000)
+    )
     # the moments alone, in two units, would take 64 MB
     assert many < few + 20_000_000
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-@pytest.mark.parametrize("text", [LOOP, BENT], ids=["a loop", "a slope that may jump"])
+@pytest.mark.parametrize(
+    "text", [REDUNDANT, BENT.replace("0.1 rad", "9 rad")], ids=["a loop", "a slope that may jump"]
+)
 def test_responses_of_loops_and_couplings_hold_no_rows(tmp_path: Path, text: str) -> None:
-    few, many = (peaks_of(tmp_path, count, 0, text)[1] for count in (100_000, 700_000))
+    few, many = (
+        peaks_of(tmp_path, text.replace("count: 41", f"count: {count}"))[1]
+        for count in (100_000, 700_000)
+    )
     # the moments alone, in two units of two doubles each, would take 19 MB
     assert many < few + 10_000_000
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_energies_and_balances_hold_no_rows(tmp_path: Path) -> None:
-    few, many = (peaks_of(tmp_path, count, 0, RUBBING)[1] for count in (100_000, 500_000))
+    few, many = (peaks_of(tmp_path, RUBBING.format(count=count))[1] for count in (100_000, 500_000))
     # held rows would take 100 bytes each at least
     assert many < few + 15_000_000

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from references import FILE_OF
+from streams.motions import BENT, REDUNDANT
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
@@ -89,36 +90,6 @@ loads: [{type: force, link: bob, point: [0, -1], force: [1 N * sqrt(2 - time / 1
 responses:
   swing: {start: {O.theta: 0}, time: {from: 0, to: 4, count: 41}}
 tables: [{name: t, run: swing, columns: [time, O.theta, row.status]}]
-"""
-REDUNDANT = """format: 1
-links:
-  crank: {mass: 1, center_of_mass: [0.05, 0.1, 0], inertia: {zz: 0.01}}
-  coupler: {mass: 2, center_of_mass: [0.3, 0.3, 0.1], inertia: {zz: 0.05}}
-  rocker: {mass: 1, center_of_mass: [0.7, 0.2, 0], inertia: {zz: 0.02}}
-joints:
-  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
-  B: {type: R, links: [crank, coupler], point: [0.05, 0.2, 0], axis: [0, 0, 1]}
-  C: {type: R, links: [coupler, rocker], point: [0.65, 0.4, 0], axis: [0, 0, 1]}
-  D: {type: R, links: [ground, rocker], point: [0.75, 0, 0], axis: [0, 0, 1]}
-loads: [{type: gravity, g: [0, -9.81, 0]}]
-responses: {run: {start: {A.theta: 0, A.theta_dot: 3 rad/s}, time: {from: 0, to: 2, count: 41}}}
-tables:
-  - {name: t, run: run, columns: [time, D.theta, B.force.x, B.force.z, C.moment.x, norm(D.force)]}
-"""
-BENT = """format: 1
-plane: xy
-units: {length: m, angle: rad, mass: kg, force: N}
-links:
-  wheel: {mass: 1, center_of_mass: [0, 0], inertia: 0.5}
-  slide: {mass: 1, center_of_mass: [0, 0]}
-joints:
-  A: {type: R, links: [ground, wheel], point: [0, 0]}
-  B: {type: P, links: [ground, slide], point: [0, 0], axis: [1, 0]}
-couplings:
-  K: {type: function, of: A.theta, gives: B.s, value: "0.3 m/rad*abs(theta - 0.1 rad)"}
-loads: [{type: torque, joint: A, value: 1}]
-responses: {r: {start: {A.theta: -1, A.theta_dot: 1}, time: {from: 0, to: 2, count: 41}}}
-tables: [{name: t, run: r, columns: [time, A.theta, B.s_dot, K.force, row.status]}]
 """
 LIMITED = PENDULUM.format(to=3, count=61, stop="") + "limits: {O.theta: {min: -0.5, max: 1.5}}\n"
 TEXTS = {
