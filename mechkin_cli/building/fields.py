@@ -8,7 +8,7 @@ of that link; the halves of a joint may meet at any place of the drawing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mechkin_cli.building.datum import Datum
@@ -58,6 +58,8 @@ from mechkin_cli.units import (
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from mechkin_cli.show import Floats
 
 Path = tuple[str | int, ...]
 
@@ -467,10 +469,12 @@ def note_force_unit(fields: Fields) -> None:
 
 class Clock(NamedTuple):
     """The moments of the rows, and `from` and `to` of `time` in the file's units; how many rows the
-    run has, and the `numbers` of those that are meant, None: all."""
+    run has, and the `numbers` of those that are meant, None: all; of very many, what gives the
+    moments of all next to others."""
 
     time: Moments
     first: float
     last: float
     run_rows: int
     numbers: NDArray[np.int64] | None = None
+    beside: Callable[[Floats], tuple[Floats, Floats]] | None = None

@@ -114,7 +114,7 @@ def build_course(
         return None
     parameter, at, _ = sources
     formula = _recorded(fields, inputs, expressions, *sources)
-    cells = cells_of(formula, at)
+    cells = cells_of(formula, at, None if clock is None else clock.beside)
     values = np.stack([item.values for item in inputs])
     return places_of(formula, cells, parameter, at, values)
 

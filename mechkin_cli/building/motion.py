@@ -225,6 +225,7 @@ def build_inputs(
     *,
     rows: NDArray[np.int64] | None = None,
     known: _Sections | None = None,
+    between: bool = True,
 ) -> MotionInputs | None:
     """Driven coordinates over the rows and between them; None where an error was noted.
 
@@ -239,6 +240,7 @@ def build_inputs(
         rows: the numbers of those that are wanted, which rise; None: all, or of the sweep a sample
             of very many.
         known: what the sections say, where they have been read.
+        between: whether the course between the rows is wanted.
     """
     errors = fields.error_count
     time = None if clock is None else clock.time
@@ -293,7 +295,7 @@ def build_inputs(
             constraints=tuple(InputConstraint(*pair) for pair in pairs),
             constraint_rates=np.array(list(constraint_rates.values())),
         )
-    if not inputs or (time is None and not expressions):
+    if not between or not inputs or (time is None and not expressions):
         return motion
     from mechkin_cli.building.laws import build_course, build_paths
 

@@ -20,8 +20,8 @@ from mechkin_cli import idle, mobility, tolerances
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_coordinate
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, spaced_moments
-from mechkin_cli.building.spacing import has_too_many_rows
-from mechkin_cli.diagnostics import nearest_hint
+from mechkin_cli.building.spacing import has_too_many_rows, sampled
+from mechkin_cli.diagnostics import InvalidFile, nearest_hint
 from mechkin_cli.expressions import parse
 from mechkin_cli.mechanism import (
     Assembly,
@@ -36,6 +36,7 @@ from mechkin_cli.mechanism import (
     MotionInputs,
     Problem,
     ResponseProblem,
+    SpacedMoments,
     StartValue,
     Stop,
     TurnsEnd,
@@ -47,9 +48,20 @@ from mechkin_cli.session import jumps_of
 from mechkin_cli.units import DIMENSIONLESS, TIME
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.building.fields import Fields, Path
     from mechkin_cli.building.loads import LoadBuilder
-    from mechkin_cli.mechanism import Assembly, Joint, LockedFreedom, Mechanism, Problem, Wanted
+    from mechkin_cli.mechanism import (
+        Assembly,
+        DrivenInput,
+        DrivenRows,
+        Joint,
+        LockedFreedom,
+        Mechanism,
+        Problem,
+        Wanted,
+    )
 
 
 def build_assembly(
@@ -328,12 +340,7 @@ class _ResponseBuilder:
         # moments, and orders of what is driven: rows may be taken block by block
         self.per_row = 2 + 8 * len(section.driven or ())
         clock = self._clock(path, section)
-        driven: MotionInputs | None = None
-        if section.driven:
-            driven = build_inputs(
-                self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
-            )
-        driven = driven or MotionInputs((), 1)
+        driven, driven_rows = self._driven(path, section, clock)
         self._check_ties(path, driven)
         self._check_jumps(path, driven)
         efforts = self._efforts(path, section, name)
@@ -348,6 +355,7 @@ class _ResponseBuilder:
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             driven=driven.inputs,
+            driven_rows=driven_rows,
             course=driven.course,
             moments=clock.time,
             stops=(*self._stops(path, section, stops), *self._limits()),
@@ -486,6 +494,38 @@ class _ResponseBuilder:
                 f"{fields.units.label(dimension)}",
             )
 
+    def _driven(
+        self, path: Path, section: written.Response, clock: Clock
+    ) -> tuple[MotionInputs, DrivenRows | None]:
+        """The driven coordinates at the moments; of very many moments at a sample of them, and what
+        gives them at others, by the numbers of rows."""
+        place = (*path, "driven")
+
+        def at(own: Fields, moments: Clock, *, between: bool) -> MotionInputs | None:
+            return build_inputs(
+                own, place, section.driven, self.joints, self.per_row, moments, between=between
+            )
+
+        if not section.driven:
+            return MotionInputs((), 1), None
+        every = clock.time
+        if not isinstance(every, SpacedMoments):
+            return at(self.fields, clock, between=True) or MotionInputs((), 1), None
+        moments_at, beside = every.at, every.beside
+
+        def some(numbers: NDArray[np.int64]) -> Clock:
+            return clock._replace(time=moments_at(numbers), numbers=numbers, beside=beside)
+
+        def in_rows(first: int, end: int) -> tuple[DrivenInput, ...]:
+            own = replace(self.fields, diagnostics=[], refused=set(self.fields.refused))
+            motion = at(own, some(np.arange(first, end)), between=False)
+            if motion is None or own.error_count:
+                raise InvalidFile([one for one in own.diagnostics if one.severity == "error"])
+            return motion.inputs
+
+        motion = at(self.fields, some(sampled(clock.run_rows)), between=True)
+        return motion or MotionInputs((), 1), in_rows
+
     def _check_ties(self, path: Path, driven: MotionInputs) -> None:
         """Notes ties of the sweep's inputs that the response would leave out."""
         motion = self.problem.motion
@@ -513,8 +553,7 @@ class _ResponseBuilder:
         place = (*path, "time")
         errors = self.fields.error_count
         if isinstance(section.time, TimeSection):
-            held = bool(section.driven)
-            clock = spaced_moments(self.fields, place, section.time, self.per_row, held=held)
+            clock = spaced_moments(self.fields, place, section.time, self.per_row, held=False)
         else:
             clock = self._listed(place, section.time)
         if clock.time.rows < 2 and self.fields.error_count == errors:

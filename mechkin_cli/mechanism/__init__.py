@@ -71,8 +71,8 @@ __getattr__, __dir__ = lazy_names(
         "TIME_OF_ROW bearing_load coordinate_quantities effort_quantity friction_states read_for "
         "response_quantities resting_quantities strands_of",
         "relation": "Arm Extent Fleet Follower Mesh Relation Swing Tension Term",
-        "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd EquilibriumSearch Flywheel "
-        "Harmonics LoadWork ResponseProblem SlopeEnd StartValue Stop TurnsEnd",
+        "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd DrivenRows EquilibriumSearch "
+        "Flywheel Harmonics LoadWork ResponseProblem SlopeEnd StartValue Stop TurnsEnd",
         "track": "Track",
         "vectors": "Frame GROUND Line Vector ZERO add cross dot eliminated frame_about norm "
         "perpendicular scale subtract turned_shortest turned_tensor unit upright",

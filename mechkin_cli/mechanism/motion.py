@@ -132,8 +132,24 @@ class SpacedMoments:
 
     def part(self, rows: slice) -> Moments:
         """Those of some neighbouring rows."""
-        written = self._written(np.arange(*rows.indices(self.rows)))
+        return self.at(np.arange(*rows.indices(self.rows)))
+
+    def at(self, rows: NDArray[np.int64]) -> Moments:
+        """Those of some rows, by their numbers."""
+        written = self._written(rows)
         return Moments(self._in_si(written.copy()), written)
+
+    def beside(self, written: Floats) -> tuple[Floats, Floats]:
+        """Of times (times,) from the first moment to the last, the moments next to each, below and
+        above it; all in the file's unit."""
+        first, last = self._written(np.array([0, self.rows - 1])).tolist()
+        number = np.floor((written - first) / (last - first) * (self.rows - 1)).astype(np.int64)
+        # rounding may be off by one
+        near = np.clip(number[:, None] + np.arange(-1, 3), 0, self.rows - 1)
+        moments = self._written(near.ravel()).reshape(near.shape)
+        place = np.clip(np.count_nonzero(moments < written[:, None], axis=1), 1, 3)
+        row = np.arange(place.size)
+        return moments[row, place - 1], moments[row, place]
 
 
 class Limit(NamedTuple):

@@ -8,6 +8,7 @@ moment.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -117,6 +118,10 @@ class EquilibriumSearch(NamedTuple):
     starts: int = 0
 
 
+DrivenRows = Callable[[int, int], "tuple[DrivenInput, ...]"]
+"""Gives driven coordinates in rows from one to another, which is not among them."""
+
+
 @dataclass(frozen=True, eq=False)
 class ResponseProblem:
     """One of the file's responses, or of its equilibria: these have a `search`, and no stops, and
@@ -130,7 +135,8 @@ class ResponseProblem:
         assembly: which assembly is meant at the first moment.
         efforts: as given, their laws by the numbers of the response's; they stand among the
             mechanism's loads, too.
-        driven: coordinates that move by laws, with their orders at all moments.
+        driven: coordinates that move by laws, with their orders at all moments, or at some of very
+            many, the first and the last among them; see `driven_in`.
         course: the driven coordinates between the moments, over the time in the file's units; None
             where nothing is driven.
         moments: of the rows.
@@ -141,6 +147,8 @@ class ResponseProblem:
         load_laws: of the loads of this run.
         held: what holds its idle freedoms.
         search: of equilibria; None of a motion.
+        driven_rows: gives them at the moments of rows from one to another, which is not among them;
+            None where `driven` has all.
         frictions: without which loads balance at equilibria, and which hold the mechanism in an
             interval about each.
     """
@@ -161,6 +169,17 @@ class ResponseProblem:
     held: tuple[LockedFreedom, ...] = ()
     search: EquilibriumSearch | None = None
     frictions: tuple[Rubbing, ...] = ()
+    driven_rows: DrivenRows | None = None
+
+    def driven_in(self, first: int, end: int) -> tuple[DrivenInput, ...]:
+        """The driven coordinates at the moments of rows [first, end).
+
+        Raises:
+            InvalidFile: a law is not defined at one of them.
+        """
+        if self.driven_rows is not None:
+            return self.driven_rows(first, end)
+        return tuple(item.part(slice(first, end)) for item in self.driven)
 
     @property
     def section(self) -> str:
@@ -256,14 +275,7 @@ def _started(one: StartValue, units: UnitSystem) -> DrivenInput:
 
 
 def _at_first(item: DrivenInput) -> DrivenInput:
-    return item._replace(
-        values=item.values[:1],
-        rates=item.rates[:1],
-        accelerations=item.accelerations[:1],
-        jerks=item.jerks[:1],
-        written_orders=item.written_orders[:, :1],
-        follows=False,
-    )
+    return item.part(slice(1))._replace(follows=False)
 
 
 # Balances of the sweep over a cycle: what a file asks for, checked.

@@ -60,9 +60,8 @@ def rows_problem(
     `stop`, if there is one."""
     every = response.moments
     end = place.first + place.rows - (stop is not None)
-    rows = slice(place.first, end)
-    moments = every.part(rows)
-    driven = tuple(_part(item, rows) for item in response.driven)
+    moments = every.part(slice(place.first, end))
+    driven = response.driven_in(place.first, end)
     if stop is not None:
         written = float(free.problem.units.from_si(stop, TIME))
         values = np.append(moments.values, stop)
@@ -102,16 +101,6 @@ def _before_jumps(
     return tuple(
         item._replace(accelerations=a, written_orders=w)
         for item, a, w in zip(driven, accelerations, written, strict=True)
-    )
-
-
-def _part(item: DrivenInput, rows: slice) -> DrivenInput:
-    return item._replace(
-        values=item.values[rows],
-        rates=item.rates[rows],
-        accelerations=item.accelerations[rows],
-        jerks=item.jerks[rows],
-        written_orders=item.written_orders[:, rows],
     )
 
 

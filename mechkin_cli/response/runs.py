@@ -357,7 +357,8 @@ def _nothing(one: Prepared) -> ResponseResult:
     zeros = np.zeros((charts, count))
     directions = np.zeros((charts * free.plan.columns, count))
     chart = Chart(directions, zeros, zeros, np.zeros((0, count)))
-    motion = MotionInputs(response.driven, count, response.moments, response.course)
+    driven = response.driven_in(0, count)
+    motion = MotionInputs(driven, count, response.moments, response.course)
     return ResponseResult(
         free.moved(replace(free.problem, motion=motion)),
         start,

@@ -119,6 +119,33 @@ _WAYS: dict[Operation, Callable[[Floats, Floats], Floats]] = {
 }
 
 
+Beside = Callable[["Floats"], "tuple[Floats, Floats]"]
+"""Of parameters, those of the rows next to them below and above."""
+
+
+class _Rows(NamedTuple):
+    """The least and the largest parameter of the rows, and those next to others."""
+
+    low: float
+    high: float
+    beside: Beside
+
+    @property
+    def same(self) -> float:
+        """How far parameters lie apart that are one."""
+        return COURSE_SAME * (self.high - self.low)
+
+
+def _beside(rows: Floats) -> Beside:
+    """Of rows whose parameters are held, in order."""
+
+    def beside(at: Floats) -> tuple[Floats, Floats]:
+        place = np.clip(np.searchsorted(rows, at), 1, rows.size - 1)
+        return rows[place - 1], rows[place]
+
+    return beside
+
+
 class _Cell(NamedTuple):
     low: float
     high: float
@@ -126,11 +153,17 @@ class _Cell(NamedTuple):
     ways: Floats
 
 
-def cells_of(formula: Formula, at: Floats) -> Cells:
-    """The cells between the least and the largest parameter of the rows."""
+def cells_of(formula: Formula, at: Floats, beside: Beside | None = None) -> Cells:
+    """The cells between the least and the largest parameter of the rows.
+
+    Args:
+        formula: of the inputs.
+        at: parameters of the rows, or of some of very many, the least and the largest among them.
+        beside: of very many, their rows next to parameters; None: `at` are all.
+    """
     low, high = float(at.min()), float(at.max())
     density = max(COURSE_SAMPLES, min(8 * at.size, MOST_COURSE_SAMPLES)) / (high - low)
-    rows = np.unique(at)
+    rows = _Rows(low, high, beside or _beside(np.unique(at)))
     edges = _snapped(np.array([low, *(e for e in formula.edges if low < e < high), high]), rows)
     kinked = [
         part
@@ -179,13 +212,12 @@ def _samples(cell: _Cell, density: float) -> Floats:
     return cell.low + (cell.high - cell.low) * np.linspace(0.0, 1.0, count)
 
 
-def _snapped(edges: Floats, rows: Floats) -> Floats:
+def _snapped(edges: Floats, rows: _Rows) -> Floats:
     """Edges in order, those next to a row exactly on it, each once."""
-    place = np.clip(np.searchsorted(rows, edges), 1, rows.size - 1)
-    for near in (rows[place - 1], rows[place]):
-        edges = np.where(np.abs(edges - near) <= COURSE_SAME * (rows[-1] - rows[0]), near, edges)
+    for near in rows.beside(edges):
+        edges = np.where(np.abs(edges - near) <= rows.same, near, edges)
     edges = np.array(sorted(set(edges.tolist())))
-    apart = np.diff(edges) > COURSE_SAME * (rows[-1] - rows[0])
+    apart = np.diff(edges) > rows.same
     kept: Floats = edges[np.concatenate([[True], apart])]
     return kept
 
@@ -199,7 +231,7 @@ def _between(formula: Formula, edges: Floats) -> list[_Cell]:
     return found
 
 
-def _parts(formula: Formula, cell: _Cell, inner: list[float], rows: Floats) -> list[_Cell]:
+def _parts(formula: Formula, cell: _Cell, inner: list[float], rows: _Rows) -> list[_Cell]:
     """A cell cut at some parameters in it."""
     edges = _snapped(np.array([cell.low, *sorted(inner), cell.high]), rows)
     edges[0], edges[-1] = cell.low, cell.high
@@ -210,7 +242,7 @@ def _parts(formula: Formula, cell: _Cell, inner: list[float], rows: Floats) -> l
     return found
 
 
-def _at_kinks(formula: Formula, cell: _Cell, at: Floats, rows: Floats) -> list[_Cell]:
+def _at_kinks(formula: Formula, cell: _Cell, at: Floats, rows: _Rows) -> list[_Cell]:
     """A cell cut where a switch goes the other way."""
     if not formula.switches:
         return [cell]
@@ -243,7 +275,7 @@ def _change(
 
 
 def _at_rests(
-    formula: Formula, cell: _Cell, at: Floats, rows: Floats
+    formula: Formula, cell: _Cell, at: Floats, rows: _Rows
 ) -> list[tuple[_Cell, CellKind, tuple[int, int]]]:
     """A smooth cell cut where what moves in it turns or rests."""
     rates = formula.jets(at, cell.constants, cell.ways)[:, :, 1]

@@ -100,8 +100,8 @@ ROWS = [
     response("start: {O.theta: 2}, time: {from: 0, to: 1, step: »0}", "zero-step", "zero"),
     response("start: {O.theta: 2}, time: {from: 0, to: 9, step: »1e-12}", "too-many-rows"),
     response(
-        "start: {O.theta: 2}, driven: {D.s: {at: 1}}, time: {from: 0, to: 1, step: »1e-9}",
-        "too-many-numbers",
+        "start: {O.theta: 2}, driven: {D.s: {at: 1}}, time: {from: 0, to: 9, step: »1e-12}",
+        "too-many-rows",
     ),
     response(
         "start: {O.theta: 2}, time: »{from: 1, to: 0, step: 0.1}", "time-backwards", "backwards"
