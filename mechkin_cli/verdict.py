@@ -165,8 +165,20 @@ def are(codes: NDArray[np.int8], status: Status) -> Bools:
     return found
 
 
+def are_ok(codes: NDArray[np.int8]) -> bool:
+    """Whether all of many rows are `ok`: no code is another one than zero, which numpy counts
+    fastest."""
+    import numpy as np
+
+    return not np.count_nonzero(codes)
+
+
 def has_solution(codes: NDArray[np.int8]) -> Bools:
     """`Status.has_solution` of many rows, the same shape as the codes."""
+    import numpy as np
+
+    if are_ok(codes):  # as most; to look each up takes twenty times as long
+        return np.full(codes.shape, Status.ok.has_solution)
     return _marked("has_solution")[codes]
 
 

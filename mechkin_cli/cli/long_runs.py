@@ -17,6 +17,7 @@ from mechkin_cli.cli.messages import put, say
 from mechkin_cli.cli.progress import clock
 from mechkin_cli.cli.show import shown_ends, shown_summary, streamed_summary
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import LongRun
 from mechkin_cli.record import replace
 from mechkin_cli.tables import (
@@ -35,7 +36,7 @@ from mechkin_cli.tables import (
     summary_table,
     write_table,
 )
-from mechkin_cli.tolerances import LONG_RUN
+from mechkin_cli.tolerances import FREED_MEGABYTES, LONG_RUN
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -131,6 +132,7 @@ def stream_to(
     Raises:
         UsageError: a file cannot be written, or a quantity needs all rows at once.
     """
+    _kernel.keep_freed_memory(FREED_MEGABYTES)
     packing = command.lanes, command.threads
     names = [each.name for each in chosen(tuple(model.tables), command.table) if each.run == run]
     wanted = None if command.table is None else names

@@ -201,6 +201,9 @@ def extremes(numbers: Floats) -> tuple[int, int, float, float]:
     the smallest; -inf and inf of none."""
 
 def available_processors() -> int: ...
+def keep_freed_memory(megabytes: int) -> None:
+    """Lets the process keep so much freed memory for its next arrays; only glibc gives it back."""
+
 def output_width(type: int) -> int: ...
 def output_demand(type: int, order: int = 0) -> Demand: ...
 def enclose(plan: Plan, **arguments: Any) -> None: ...
@@ -464,9 +467,11 @@ class Plan:
         iterations: int = 0,
         tests: tuple[float, float, float],
         only: int | None = None,
+        limit: Floats | None = None,
+        most_condition: tuple[float] | None = None,
         lanes: int = 0,
         threads: int = 1,
-    ) -> None: ...
+    ) -> bool: ...
     def run_precise(
         self,
         *,

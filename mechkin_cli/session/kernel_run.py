@@ -88,6 +88,7 @@ class RowInputs(NamedTuple):
         chart: of a plan with one.
         origin: (states, rows) that the chart is about, where that is not the guess; in doubles.
         place: (charts, rows) its coordinates there; None: zero.
+        limit: (rows,) the largest correction that a guess may need; `Batch.all_closed` goes by it.
     """
 
     inputs: Floats
@@ -103,6 +104,7 @@ class RowInputs(NamedTuple):
     chart: Chart | None = None
     origin: Floats | None = None
     place: Floats | None = None
+    limit: Floats | None = None
 
     def at(self, rows: NDArray[np.intp] | Sequence[int]) -> RowInputs:
         """Some of the rows, in this order."""
@@ -162,7 +164,9 @@ class Batch(NamedTuple):
     none; `chart_forces` (charts, rows), in kernel units, are what would have to act along a chart's
     coordinates for its accelerations: M u'' + r in docs/numerics.md, zero along a free motion;
     `turns` (turn slots, rows) are angles within a turn and orientations of cut joints, of either
-    sign; what was not asked for is None.
+    sign; what was not asked for is None. `all_closed` tells, where rows have limits and more than
+    positions was demanded, that each closed within its own, on one side of every fold and with a
+    condition that leaves digits enough: nothing is to be judged row by row.
 
     In double-double there is no `condition`, no `side` and no `turns`; a row that Newton could not
     bring to the rounding of double-double is not converged, and its numbers are as good as its
@@ -183,6 +187,7 @@ class Batch(NamedTuple):
     undefined: NDArray[np.uint8] | None = None
     chart_forces: Floats | None = None
     turns: Floats | None = None
+    all_closed: bool = False
 
     @property
     def good(self) -> NDArray[np.bool_]:
@@ -213,11 +218,11 @@ def run(
         ValueError: shapes, codes or numbers that do not fit the plan or each other.
     """
     inputs, guess, rates, accelerations, jerks, transmitted = rows[:6]
-    turned, whole, full, time, chart, origin, place = rows[6:]
+    turned, whole, full, time, chart, origin, place, limit = rows[6:]
     count = inputs.shape[-1]
     demand = int(ask.demand)  # flags of an enumeration are slow, and short calls are many
     outputs = None if ask.readout is None else ask.readout.outputs
-    call: Callable[..., None] = plan.run
+    call: Callable[..., object] = plan.run
     turns: Floats | None = None
     if constants is None:
         given, tests = _contiguous, RESIDUAL_TESTS
@@ -241,6 +246,9 @@ def run(
                 chart_forces=chart_forces,
                 turn=turns,
             )
+        if limit is not None and told:
+            most = (tolerances.CONDITION_FEW_DIGITS,)
+            call = partial(call, limit=given(limit), most_condition=most)
     else:
         given, tests = _in_parts, PRECISE_TESTS
         shape = (2, count)
@@ -272,7 +280,7 @@ def run(
     undefined = np.empty(count, dtype=np.uint8) if varying else None
     # each by name, in the order in which the kernel looks for them: a mapping among the arguments
     # would cost a short call a tenth
-    call(
+    all_closed = call(
         inputs=given(inputs),
         guess=given(guess),
         rates=given(rates) if moving else None,
@@ -309,7 +317,7 @@ def run(
     )
     measured = (residual, correction, side, condition, power_error)
     acting = (loads, undefined, chart_forces, turns)
-    return Batch(states, values, first, second, *measured, flags, *acting)
+    return Batch(states, values, first, second, *measured, flags, *acting, bool(all_closed))
 
 
 def balance(

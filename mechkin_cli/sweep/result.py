@@ -33,7 +33,7 @@ from mechkin_cli.sweep.rows import (
     reaction_rounding,
 )
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
-from mechkin_cli.verdict import Proof, Status, are, has_solution
+from mechkin_cli.verdict import Proof, Status, are, are_ok, has_solution
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -72,17 +72,17 @@ ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "
 """Verdicts that are numbers, by the names of their quantities."""
 
 
-def _join(
-    columns: Columns,
-    parts: Sequence[Columns],
-    joined: Callable[[Sequence[Floats | None]], Floats | None],
-) -> None:
-    """Joins the columns that all parts have."""
-    for name in parts[0]:
-        if all(name in part for part in parts):
-            column = joined([part[name] for part in parts])
-            assert column is not None
-            columns[name] = column
+def _join(columns: Columns, parts: Sequence[Columns], own: Sequence[slice], rows: int) -> None:
+    """Joins the columns that all parts have, each of its `own` rows, in one array: the system gives
+    large pages to large arrays alone, and small ones take longer to come by than to fill."""
+    names = [name for name in parts[0] if all(name in part for part in parts)]
+    room = np.empty((sum(len(parts[0][name]) for name in names), rows))
+    first = 0
+    for name in names:
+        place = room[first : first + len(parts[0][name])]
+        values = [part[name][:, some] for part, some in zip(parts, own, strict=True)]
+        columns[name] = np.concatenate(values, axis=-1, out=place)
+        first += len(place)
 
 
 class Result:
@@ -222,6 +222,13 @@ class Result:
         """Rows that have a position (rows,)."""
         return has_solution(self.status)
 
+    def _where_reached(self, values: Floats) -> Floats:
+        """The values with nan in rows without a position, and themselves where there are none."""
+        reached = self.row_states.reached
+        if np.count_nonzero(reached) == reached.size:
+            return values
+        return np.where(reached, values, np.nan)
+
     def _where_solved(self, values: Floats) -> Floats:
         """The values with nan in rows without a solution, and themselves where there are none."""
         if np.count_nonzero(self.solved) == self.solved.size:
@@ -237,7 +244,7 @@ class Result:
     @property
     def sound(self) -> bool:
         """Whether every row is `ok`."""
-        return bool(np.count_nonzero(are(self.status, Status.ok)) == self.status.size)
+        return are_ok(self.status)
 
     @property
     def condition(self) -> Floats:
@@ -420,7 +427,7 @@ class Result:
 
     def keep(self, batch: Batch, ask: Ask) -> None:
         """Keeps what the run that closed the rows found."""
-        self.residual = np.where(self.row_states.reached, batch.residual, np.nan)
+        self.residual = self._where_reached(batch.residual)
         self._keep_read(batch, ask)
 
     def _keep_read(self, batch: Batch, ask: Ask) -> None:
@@ -462,9 +469,9 @@ class Result:
         self._unloaded = any(lost) if lost else None
         for each in results:
             self.demand |= each.demand
-        _join(self._columns, [each._columns for each in results], joined)
+        _join(self._columns, [each._columns for each in results], own, self.rows)
         for number, others in enumerate(self._shifted):
-            _join(others, [each._shifted[number] for each in results], joined)
+            _join(others, [each._shifted[number] for each in results], own, self.rows)
         for name in dict.fromkeys(name for each in results for name in each._rests):
             rest = joined([each._rests.get(name, each._columns[name][0]) for each in results])
             assert rest is not None
@@ -495,6 +502,7 @@ class Result:
         another's."""
         session, states = session or self.session, self.row_states
         rows = self._row_inputs(session, inputs or self.session.inputs)
+        rows = rows._replace(limit=states.limit)
         if not states.reached.all():
             reached = states.reached
             rows = rows.at(np.where(reached, np.arange(reached.size), reached.argmax()))
@@ -513,13 +521,12 @@ class Result:
         return columns_of(self.row_states, self.problem.mechanism, readout, batch)
 
     def _store_verdicts(self, batch: Batch) -> None:
-        missing = ~self.row_states.reached
         if batch.condition is not None and self._condition is None:
-            self._condition = np.where(missing, np.nan, batch.condition)
+            self._condition = self._where_reached(batch.condition)
         if batch.power_error is not None and self._power_error is None:
-            self._power_error = np.where(missing, np.nan, batch.power_error)
+            self._power_error = self._where_reached(batch.power_error)
         if batch.undefined is not None and self._unloaded is None:
-            lost = batch.undefined.astype(bool) & ~missing
+            lost = batch.undefined.astype(bool) & self.row_states.reached
             self._unloaded = bool(lost.any())
             if self._unloaded:
                 self.row_states.diagnostics += undefined_loads(self, lost)

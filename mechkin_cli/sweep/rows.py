@@ -235,20 +235,26 @@ def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) 
     rows, session = result.row_states, result.session
     driven, tree, closing = _angles(session, tuple(wanted))
     reached = rows.reached
+    is_whole = np.count_nonzero(reached) == reached.size
     for _, output, number in driven:
         values = result.problem.motion.inputs[number].values
-        outputs[output] = np.where(reached, values, outputs[output])
+        if is_whole:
+            outputs[output] = values
+        else:
+            np.copyto(outputs[output], values, where=reached)
     rests: Columns = {}
     for angles in (tree, closing):
         for name, slot, counter in angles:
-            rest, turns = outputs[slot].copy(), rows.turns[counter]
-            if angles is closing:
-                outputs[slot] = continuous_angle(rest, turns)
-            elif np.count_nonzero(turns):
-                outputs[slot] += turns * (2.0 * pi)
-            else:  # of long runs most parts have none; as with turns no zero has a sign
+            turns = rows.turns[counter]
+            if angles is tree and not np.count_nonzero(turns):
+                # of long runs most parts have none; as with turns no zero has a sign
                 outputs[slot] += 0.0
                 continue
+            rest = outputs[slot].copy()
+            if angles is closing:
+                outputs[slot] = continuous_angle(rest, turns)
+            else:
+                outputs[slot] += turns * (2.0 * pi)
             if np.count_nonzero((outputs[slot] != rest) & reached):
                 rests[name] = rest
     return rests

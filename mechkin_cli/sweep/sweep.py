@@ -344,9 +344,27 @@ def _closed_once(session: Session, start: AssemblyStart, ask: Ask, rows: SweepRo
     reached."""
     # of few rows `any` and `all` take five times as long as counting, and short runs are many
     result = Result(session, start, rows, motion_between)
-    if not np.count_nonzero(rows.reached):
+    reached = np.count_nonzero(rows.reached)
+    if not reached:
         return result
     batch = result.run(ask)
+    if batch.all_closed and reached == rows.reached.size:
+        rows.states = batch.states
+    else:
+        batch = _closed_one_by_one(result, ask, batch)
+        reached = np.count_nonzero(rows.reached)
+    if reached:
+        _judge_inputs(session, rows)
+        if rows.dead_centres and ask.readout is not None:
+            on_states = ask._replace(iterations=0)
+            batch = batch._replace(outputs=result.run(on_states).outputs)
+    result.keep(batch, ask)
+    return result
+
+
+def _closed_one_by_one(result: Result, ask: Ask, batch: Batch) -> Batch:
+    """What a run found of the rows, which are judged each by itself."""
+    session, rows = result.session, result.row_states
     slow = rows.reached & ~batch.good
     near = slow | rows.reached & _is_near_singular(batch)
     if result.graph.blocks and np.count_nonzero(near):
@@ -364,12 +382,7 @@ def _closed_once(session: Session, start: AssemblyStart, ask: Ask, rows: SweepRo
         else:
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
         judge_condition(session, rows, batch, ask)
-        _judge_inputs(session, rows)
-        if rows.dead_centres and ask.readout is not None:
-            on_states = ask._replace(iterations=0)
-            batch = batch._replace(outputs=result.run(on_states).outputs)
-    result.keep(batch, ask)
-    return result
+    return batch
 
 
 def _is_near_singular(batch: Batch) -> Bools:

@@ -41,7 +41,7 @@ from mechkin_cli.units import (
     Conversion,
     Dimension,
 )
-from mechkin_cli.verdict import Proof, Status, are, has_solution
+from mechkin_cli.verdict import Proof, Status, are, are_ok, has_solution
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -477,7 +477,7 @@ def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:
     # infinite is only what grows without bound towards a dead centre at which its row stands
     infinite = np.isinf(values)
     unit = source.units.label(quantity.dimension)
-    if are(source.status, Status.ok).all():
+    if are_ok(source.status):
         if infinite.any():
             values[infinite] = np.nan
         return TableColumn(layout.label, unit, values, layout.decimals)

@@ -41,7 +41,7 @@ ALONE = [
     # whoever looks for these stops the build
     *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in ("Python", "Python3", "nanobind")),
 ]
-GIVEN = RowInputs._fields[:-1]
+GIVEN = RowInputs._fields[: RowInputs._fields.index("place")]
 OTHER_WAY = 2
 FOUND = ("outputs", "first", "second", "side", "condition", "power_error", "loads")
 
@@ -141,7 +141,9 @@ def wanted_bytes(constants: list[np.ndarray], ask: Ask, like: Batch) -> list[byt
 
 
 def picked(batch: Batch, rows: Any) -> Batch:
-    return Batch(*(array if array is None else array[..., rows].copy() for array in batch))
+    return Batch(
+        *(each[..., rows].copy() if isinstance(each, np.ndarray) else each for each in batch)
+    )
 
 
 Caught = tuple[Session, RowInputs, Ask, Batch]

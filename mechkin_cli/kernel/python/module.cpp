@@ -5,6 +5,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "arithmetic/operations.hpp"
 #include "bindings.hpp"
 #include "rows/units.hpp"
@@ -61,6 +65,17 @@ nb::list tree_table() {
   return table;
 }
 
+// By default glibc gives freed memory back to the system at once where there is more of it than twice the largest array
+// so far, and every page of the next arrays has to be asked for anew.
+void keep_freed_memory(int megabytes) {
+  if (megabytes < 0) throw nb::value_error("megabytes: not negative");
+#ifdef __GLIBC__
+  const int largest_array = 32;  // MB: what glibc takes at most
+  mallopt(M_MMAP_THRESHOLD, (megabytes < largest_array ? megabytes : largest_array) << 20);
+  mallopt(M_TRIM_THRESHOLD, (megabytes < 1024 ? megabytes : 1024) << 20);
+#endif
+}
+
 }  // namespace
 
 const KernelUnit& unit_or_throw(int lanes) {
@@ -80,6 +95,7 @@ NB_MODULE(_kernel, m) {
   m.attr("instructions") = widths;
   m.def("joint_table", &joint_table);
   m.def("tree_table", &tree_table);
+  m.def("keep_freed_memory", &keep_freed_memory, "megabytes"_a);
   m.def("elementwise", &elementwise, "operation"_a, "x"_a, "y"_a, "lanes"_a = 0);
   bind_text(m);
   bind_codes(m);

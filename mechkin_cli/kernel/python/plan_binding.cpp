@@ -74,7 +74,8 @@ double measured_size(const FrozenPlan& plan, const nb::kwargs& keywords) {
   return assembly_size(p, unit, inputs, guess, {tests[0], tests[1], tests[2], iterations}, memory);
 }
 
-void run_plan(const FrozenPlan& plan, const nb::kwargs& keywords) {
+// Whether all rows closed within the limits that are given; false without any.
+bool run_plan(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const Plan& p = plan.view();
   Arguments given(keywords);
   Request r = {};
@@ -85,12 +86,15 @@ void run_plan(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.turn = given.write("turn", slots);
   r.chart_origin = given.read("chart_origin", p.states);
   r.chart_place = given.read("chart_place", p.charts);
+  RowLimits limits = {given.read("limit", Arguments::ONE_PER_ROW), 0.0};
+  if (limits.correction) limits.condition = given.limits("most_condition", 1)[0];
   const int threads = (int)given.integer("threads", 1, MOST_THREADS, 1);
   given.finish();
   if (r.turn && !(r.demand & DEMAND_ACCELERATION)) throw nb::value_error("turn: told with accelerations");
   if (only >= 0 && (r.demand & ~DEMAND_CONDITION || r.outputs))
     throw nb::value_error("one block alone has its closing and its condition");
-  if (r.rows == 0) return;
+  if (limits.correction && !r.side) throw nb::value_error("limit: goes with sides");
+  if (r.rows == 0) return false;
   value_of(check_demand(r, outputs, p));
   std::vector<unsigned char> use((std::size_t)p.blocks, BLOCK_LEFT);
   Held others = {};
@@ -106,7 +110,9 @@ void run_plan(const FrozenPlan& plan, const nb::kwargs& keywords) {
     std::fill(r.turn, r.turn + slots * r.rows, 0.0);  // the states of the tree have their turns
   }
   nb::gil_scoped_release released;
+  if (limits.correction) return run_rows(p, r, unit, threads, limits);
   run_rows(p, r, unit, threads);
+  return false;
 }
 
 void search(const FrozenPlan& plan, const nb::kwargs& keywords) {

@@ -1,6 +1,7 @@
 #include "rows/run.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -68,6 +69,19 @@ void run_rows(const Plan& p, const Request& r, const KernelUnit& unit, int most_
   const int threads = threads_for(r.rows, most_threads);
   share_out(r.rows, chunk_of(r.rows, threads), threads, unit.workspace_size(p),
             [&](long begin, long end, char* workspace) { unit.run_rows(p, r, begin, end, workspace); });
+}
+
+bool run_rows(const Plan& p, const Request& r, const KernelUnit& unit, int most_threads, const RowLimits& limits) {
+  const int threads = threads_for(r.rows, most_threads);
+  std::atomic<bool> closed{true};
+  share_out(r.rows, chunk_of(r.rows, threads), threads, unit.workspace_size(p),
+            [&](long begin, long end, char* workspace) {
+              unit.run_rows(p, r, begin, end, workspace);
+              // a thread's first row beside that of all, which may not be there yet, is looked at below
+              if (!all_closed(r, p.blocks, limits, begin, end)) closed = false;
+            });
+  for (long row = 0; closed && row < r.rows; row += LEAST_CHUNK) closed = on_one_side(r, p.blocks, 0, row);
+  return closed;
 }
 
 void search_rows(const Plan& p, const SearchRequest& r, const KernelUnit& unit, int threads) {
