@@ -57,6 +57,11 @@ class Block(NamedTuple):
     contacts: Sequence[Contact] = ()
 
 
+STRETCH_ROWS = 1024
+"""Rows of a stretch behind an impact that are integrated before they are handed on: most are short,
+and arrays of more rows would be filled for nothing."""
+
+
 class _Stretch(NamedTuple):
     """A part of a motion that is integrated at once.
 
@@ -135,6 +140,7 @@ class Stretches:
         self, one: Prepared, packing: Packing, rows: int, moved: MotionRows | None = None
     ) -> None:
         self._one, self._packing, self._rows, self._moved = one, packing, rows, moved
+        self._block = min(rows, STRETCH_ROWS)
         self.rebounds: list[Rebound] = []
         self.resting: dict[Limit, int] = {}
         self._unresolved: ImpactAt | None = None
@@ -276,7 +282,7 @@ class Stretches:
         )
         moments = self._one.response.moments
         start = rest.start(touch.time, moments, first)
-        onward = rest.onward(touch.time, moments, first, start, self._rows)
+        onward = rest.onward(touch.time, moments, first, start, self._block)
         blocks = (Block(*each) for each in onward)
         return _Stretch(first, blocks, start.turns, work, touch.time, resting.held, left)
 
@@ -310,12 +316,12 @@ class Stretches:
         def run(block: int, taker: Taker | None) -> MotionRows:
             return self._onward(begun, begin, times, block, taker)
 
-        for moved in marched(run, times.rows, self._rows):
+        for moved in marched(run, times.rows, self._block):
             if begin < first and moved.report.end is MotionEnd.STUCK and not moved.report.rows:
                 fastest = float(np.max(np.abs(begun.first), initial=0.0))
                 if (first - begin) * fastest <= tolerances.IMPACT_PLACE:
                     begin = first
-                    yield from map(Block, marched(run, times.rows, self._rows))
+                    yield from map(Block, marched(run, times.rows, self._block))
                     return
             yield Block(moved)
 

@@ -3,6 +3,8 @@ limits act on."""
 
 from __future__ import annotations
 
+from streams.motions import BENT, REDUNDANT
+
 HEAD = """format: 1
 plane: xy
 units: {length: m, angle: rad, mass: kg, force: N}
@@ -33,6 +35,22 @@ tables: [{{name: t, run: r, columns: [time, S.s, S.s_dot, S.effort, {WORK}]}}]
 """
 )
 """Between two limits; it comes to both again and again, and then to none."""
+
+ENDING = (
+    HEAD
+    + f"""\
+links: {{slider: {{mass: 2, center_of_mass: [0, 0]}}, other: {{mass: 1, center_of_mass: [0, 0]}}}}
+joints:
+  S: {{type: P, links: [ground, slider], point: [0, 0], axis: [1, 0]}}
+  X: {{type: P, links: [ground, other], point: [0, 0], axis: [1, 0]}}
+loads: [{{type: spring, joint: S, coordinate: s, stiffness: 50, free: 0.02}}]
+limits: {{S.s: {{min: -0.1, max: 0.15, restitution: 0.9}}, X.s: {{max: 0.3}}}}
+responses:
+  r: {{start: {{S.s: 0, S.s_dot: 2, X.s: 0, X.s_dot: 0.1}}, time: TIME}}
+tables: [{{name: t, run: r, columns: [time, S.s, X.s, S.effort, {WORK}]}}]
+"""
+)
+"""Beside it another one comes to a limit without restitution, which ends the motion."""
 
 PLATFORM = (
     HEAD
@@ -129,7 +147,7 @@ links:
 joints:
   A: {{type: R, links: [ground, upper], point: [0, 0]}}
   B: {{type: R, links: [upper, lower], point: [0, -1]}}
-loads: [{{type: gravity, g: [0, -9.81]}}]
+loads: [{{type: gravity, g: [0, -9.81]}}, {{type: torque, joint: B, value: 6}}]
 limits:
   A.theta: {{min: -0.5, restitution: 0.5}}
   B.theta: {{min: -0.3, max: 0.8, restitution: 0}}
@@ -144,6 +162,19 @@ def timed(text: str, to: float, count: int, stop: str = "") -> str:
     """A text with so many rows up to a moment in s."""
     return text.replace("TIME", f"{{from: 0, to: {to}, count: {count}}}").replace("STOP", stop)
 
+
+DWELLS = """driven:
+      P.s:
+        law: sequence
+        from: 0
+        segments:
+          - {for: 0.3, to: 0.2, law: cycloidal}
+          - {for: 0.3, law: dwell}
+          - {for: 0.3, to: 0, law: cycloidal}
+          - {for: 0.3, law: dwell}
+          - {for: 0.3, to: 0.2, law: harmonic}
+          - {for: 0.3, law: dwell}
+          - {for: 1.2, to: 0, law: harmonic}"""
 
 TEXTS = {
     "a ball that comes to rest": timed(BALL, 3, 61),
@@ -166,4 +197,16 @@ TEXTS = {
     "friction": timed(RUBBING, 3, 61),
     "a stop behind impacts": timed(RUBBING, 3, 61, "{value: X.s, at: 2}"),
     "rests beside a motion": timed(PENDULUM, 3, 121),
+    "a platform that stands in between": timed(PLATFORM, 3, 91).replace(
+        "driven: {P.s: {law: sine, amplitude: 0.1, frequency: 2 Hz}}", DWELLS
+    ),
+    "a slope that jumps behind an impact": BENT.replace(
+        "{A.theta: -1, A.theta_dot: 1}", "{A.theta: -1, A.theta_dot: -1}"
+    ).replace("loads:", "limits: {A.theta: {min: -1.2, restitution: 0.5}}\nloads:"),
+    "redundant constraints": REDUNDANT.replace(
+        "responses:", "limits: {D.theta: {min: -0.2, max: 0.3, restitution: 0.3}}\nresponses:"
+    )
+    .replace("responses: {run:", "responses: {r:")
+    .replace("run: run", "run: r"),
+    "a limit without restitution behind impacts": timed(ENDING, 4, 81),
 }
