@@ -12,6 +12,7 @@ from streams.test_responses import cells, small_blocks
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
+from mechkin_cli.response import resting, stretches
 from mechkin_cli.tables import Columns, rows_table
 
 
@@ -45,6 +46,20 @@ def test_blocks_have_the_bytes_of_the_run(
     assert [(c.label, cells(c)) for c in stream.impacts.columns] == [
         (c.label, cells(c)) for c in whole.impacts.columns
     ]
+
+
+@pytest.mark.parametrize("rows", [1, 3, 10])
+@pytest.mark.parametrize("name", TEXTS)
+def test_no_answer_depends_on_how_far_is_looked_ahead(
+    name: str, rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither within a stretch, nor within a rest until a limit pulls."""
+    whole = mk.loads(TEXTS[name]).respond("r")
+    monkeypatch.setattr(stretches, "STRETCH_ROWS", rows)
+    monkeypatch.setattr(resting, "WINDOW", rows)
+    found = mk.loads(TEXTS[name]).respond("r")
+    for column, expected in zip(found.tables[0].columns, whole.tables[0].columns, strict=True):
+        assert cells(column) == cells(expected), column.label
 
 
 def numbers_of(table: Columns) -> dict[str, np.ndarray]:
