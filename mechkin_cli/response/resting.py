@@ -113,12 +113,12 @@ class _Look:
     def __init__(self, pushes: Floats, begin: float) -> None:
         self._begun, self._last = pushes, begin
         self._most = np.zeros(len(pushes))
-        self.found: tuple[float, float, int] | None = None
+        self.found: tuple[float | None, float, int] | None = None
 
     def over(self, pushes: Floats, times: Floats) -> bool:
         """Adds moments and how limits push there (limits, moments): whether none pulls. Where one
-        does, `found` has the moments before it and of it, and its number. What is rounding goes by
-        the largest force up to the window's end."""
+        does, `found` has the moment before it, None where the motion begins with it, its own, and
+        the limit's number. What is rounding goes by the largest force up to the window's end."""
         pushes = np.concatenate([self._begun, pushes], axis=1)
         times = np.concatenate([[self._last], times])
         self._most = np.fmax(self._most, np.nanmax(np.abs(pushes), axis=1, initial=0.0))
@@ -127,8 +127,9 @@ class _Look:
         self._begun, self._last = pushes[:, -1:], float(times[-1])
         if not pulling.size:
             return True
-        k = int(pulling[0])
-        self.found = float(times[max(k - 1, 0)]), float(times[k]), int(np.argmin(pushes[:, k]))
+        k = int(pulling[0])  # 0 in the first window alone: the others begin with what did not pull
+        before = float(times[k - 1]) if k else None
+        self.found = before, float(times[k]), int(np.argmin(pushes[:, k]))
         return False
 
 
@@ -339,7 +340,7 @@ class RestingMotion:
         if look.found is None:
             return None
         low, high, which = look.found
-        if low == high:
+        if low is None:
             return _Leaves(begin, self.stops[which])
         while True:
             inner = np.unique(low + (high - low) * np.linspace(0.0, 1.0, SAMPLES + 1))
