@@ -365,11 +365,12 @@ def _none_of(moved: MotionRows) -> MotionRows:
 
 
 class _Gathered:
-    """Rows of stretches as blocks of so many. A full one is kept until another row comes: an impact
-    at the moment of its last row tells the forces of that row."""
+    """Rows of stretches as blocks of so many. A full one is kept until another row comes, where
+    there may be an impact: one at the moment of its last row tells the forces of that row."""
 
     def __init__(self, response: ResponseProblem, rows: int) -> None:
         self._moments, self._rows = response.moments, rows
+        self._keeps = any(limit.restitution is not None for limit in limits_of(response))
         self._pieces: list[MotionRows] = []
         self._contacts: list[Contact] = []
         self._first = self._count = 0
@@ -393,6 +394,8 @@ class _Gathered:
             self._pieces.append(with_columns(moved, slice(at, None)) if at else moved)
         elif count > at:
             self._pieces.append(with_columns(moved, slice(at, None)) if at else moved)
+            if self._count == self._rows and not self._keeps:
+                yield self._full()
 
     def _full(self) -> Block:
         pieces, rows = self._pieces, self._rows

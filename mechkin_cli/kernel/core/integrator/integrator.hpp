@@ -193,15 +193,8 @@ struct RowTimes {
     row += part.skipped;
     return spaced ? spaced->at(row) : time[lane * stride + row];
   }
-  double at(int lane, long row) const {
-    if (part.has_last && row == count - 1) return part.last;
-    if (part.parts == 1) return given(lane, row);
-    const long whole = row / part.parts, inner = row % part.parts + 1;
-    const double to = given(lane, whole);
-    if (inner == part.parts) return to;
-    const double from = whole ? given(lane, whole - 1) : part.begin;
-    return from + (to - from) * ((double)inner / part.parts);
-  }
+  double at(int lane, long row) const { return part.parts == 1 && !part.has_last ? given(lane, row) : between(lane, row); }
+  double between(int lane, long row) const;
 };
 
 enum class LaneEnd : unsigned char {
