@@ -160,6 +160,12 @@ class Stream:
         return by_label(self.balance_tables)
 
     @property
+    def impacts(self) -> Columns | None:
+        """The impacts of a response, as those of an analysis, when all rows have been taken; None
+        before, and without any."""
+        return None if isinstance(self.source, Sweep) else self.source.impact_table
+
+    @property
     def complete(self) -> bool:
         """Whether every row that was taken has a solution, and every balance its cells."""
         faulty = self._beside is not None and bool(self._beside.faults)

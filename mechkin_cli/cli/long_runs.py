@@ -162,6 +162,8 @@ def stream_to(
             del part, rows
     others = [] if command.summary_only else [*stream.coefficients]
     others += stream.balance_tables
+    if not command.summary_only and stream.impacts is not None:
+        others.append(stream.impacts)
     for table in tables:
         summary = table.summary(stream)
         if summary is not None:

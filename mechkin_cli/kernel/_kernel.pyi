@@ -822,6 +822,9 @@ def respond(
     threads: int,
     block: int = 0,
     taker: Callable[[int, int, list[Any]], bool] | None = None,
+    some: tuple[int, int] = (0, -1),
+    parts: int = 1,
+    last: float | None = None,
 ) -> tuple[Any, ...]: ...
 
 class SpacedTimes:
@@ -853,6 +856,7 @@ class DrivenLaws:
         held: Sequence[float],
     ) -> None: ...
     def at(self, time: float) -> list[tuple[float, float, float]]: ...
+    def over(self, times: Floats) -> Floats: ...
 
 def prove_boxes(
     plan: Plan,

@@ -1,46 +1,37 @@
 """A response in blocks of rows, each of which may be forgotten when the next one is taken.
 
-The kernel marches on in a thread of its own and hands on the rows of a block as it has reached them
-(core/response), so it takes the very steps that it takes where all rows are held. How many rows a
-motion with stops has, and the energies by which `row.energy_error` is measured, are known behind
-its last row alone: where they are wanted before, the motion is gone through twice.
+How many rows a motion with stops has, the limits at which something rests, and the energies by
+which `row.energy_error` is measured, are known behind its last row alone: where they are wanted
+before, the motion is gone through twice.
 """
 
 from __future__ import annotations
 
-import atexit
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
-from queue import SimpleQueue
-from threading import Semaphore, Thread
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import Span, read_for
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.response.impacts import stopped_at_start
-from mechkin_cli.response.jumps import BendsPassed, at_jump, before_jump
-from mechkin_cli.response.report import motion_of, under_way
-from mechkin_cli.response.rows import Prepared, RunEnd, block_of, limits_of, run_end, why_held
-from mechkin_cli.response.runs import (
-    ended_at_jumps,
-    integrated,
-    integrated_rows,
-    prepare,
-    read,
-)
+from mechkin_cli.response.impulses import impact_table
+from mechkin_cli.response.jumps import BendsPassed
+from mechkin_cli.response.rows import block_of, rows_problem, run_end
+from mechkin_cli.response.runs import ended_at_jumps, integrated, prepare, read
+from mechkin_cli.response.stretches import Block, Stretches, result_of
 from mechkin_cli.sweep import Part
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.mechanism import Problem, ResponseProblem, Wanted
+    from mechkin_cli.response.integration import Rebound
     from mechkin_cli.response.report import MotionRows
     from mechkin_cli.response.result import Energies, ResponseResult
+    from mechkin_cli.response.rows import Prepared, RunEnd
     from mechkin_cli.session import Packing, Session
+    from mechkin_cli.tables import Columns
 
 
 _ENERGY_ERROR = "row.energy_error"
@@ -51,6 +42,7 @@ class _Whole(NamedTuple):
 
     end: RunEnd
     energies: Energies | None
+    stretches: Stretches
 
 
 class ResponseBlocks:
@@ -68,6 +60,7 @@ class ResponseBlocks:
         self._packing = packing
         self.names = tuple(dict.fromkeys(quantities))
         self._taken: Energies | None = None  # of the rows that have been taken so far
+        self._rebounds: Sequence[Rebound] = ()
 
     @property
     def session(self) -> Session:
@@ -108,10 +101,10 @@ class ResponseBlocks:
 
     @property
     def in_blocks(self) -> bool:
-        """Whether the rows are not held: there are many, and the motion goes on in one way."""
+        """Whether the rows are not held: there are many."""
         one = self._given
         is_long = one.response.rows > self.block_rows
-        return is_long and one.begun is not None and not why_held(one)
+        return is_long and one.begun is not None
 
     def parts(self) -> Iterator[Part]:
         """The rows in order, block by block; one block, where they are held."""
@@ -119,23 +112,35 @@ class ResponseBlocks:
             (result,) = integrated([self._given], self._packing)
             read(result, self.names)
             self._take(result)
+            self._rebounds = result.rebounds
             yield Part(result, slice(0, result.rows))
             return
         rows, done, self._taken = self.run_rows, 0, None
         if _ENERGY_ERROR in self.names:
             _ = self._whole  # before another motion is under way
-        for motion in self._marched(self._one):
+        for block in self._stretches(self._one).blocks():
+            motion = block.motion
             end = self._end_at(motion)
             count = min(motion.states.shape[1], rows - done)
             if count > 0:
-                yield self._part(motion, end, Span(done, count, rows))
+                yield self._part(block, end, Span(done, count, rows))
             done += count
         # rows that the motion did not come to
-        nothing = replace(motion, states=np.zeros_like(motion.states))
+        nothing = Block(replace(motion, states=np.zeros_like(motion.states)))
         while done < rows:
             count = min(self.block_rows, rows - done)
             yield self._part(nothing, end, Span(done, count, rows))
             done += count
+
+    @property
+    def impact_table(self) -> Columns | None:
+        """The impacts with what joints transmit, when all rows have been taken; None before, and
+        without any."""
+        if not self._rebounds:
+            return None
+        one = self._given
+        row = rows_problem(one.free, one.response, one.driven, Span(0, 1, one.response.rows), None)
+        return impact_table(one.free.moved(row), one.response.name, self._rebounds)
 
     @cached_property
     def _one(self) -> Prepared:
@@ -145,7 +150,7 @@ class ResponseBlocks:
         passed = BendsPassed(one.free.problem)
         if not passed.bends or not self.in_blocks:
             return one
-        end = self._go_through(one, passed.add)
+        end, _ = self._go_through(one, passed.add)
         return ended_at_jumps(one, passed, end.report)
 
     def _end_at(self, motion: MotionRows) -> RunEnd:
@@ -156,8 +161,14 @@ class ResponseBlocks:
         every = self._one.response.rows
         return run_end(self._one, motion.report, motion.count if motion.report.is_over else every)
 
-    def _part(self, motion: MotionRows, end: RunEnd, place: Span) -> Part:
-        result = block_of(self._one, motion, end, place)
+    def _part(self, block: Block, end: RunEnd, place: Span) -> Part:
+        is_known = bool(self._one.response.stops)
+        resting = self._whole.stretches.resting if is_known else {}
+        result = result_of(self._one, block, end, place, resting)
+        if is_known and not place.first:
+            whole = self._whole.stretches
+            self._rebounds = result.rebounds = tuple(whole.rebounds)
+            result.row_states.diagnostics += whole.notes(result.units)
         read(result, self.names)
         self._take(result)
         result.run_energies = lambda: self._whole.energies
@@ -181,20 +192,27 @@ class ResponseBlocks:
             read(result, ())
             energies = result.energies_with(energies)
 
-        end = self._go_through(self._one, add)
-        return _Whole(end, energies and energies.between(end.report, self._one.free.layout.length))
+        end, stretches = self._go_through(self._one, add)
+        found = energies and energies.between(end.report, self._one.free.layout.length)
+        return _Whole(end, found, stretches)
 
-    def _go_through(self, one: Prepared, add: Callable[[ResponseResult], None]) -> RunEnd:
-        """The end of a motion; `add` takes its rows block by block, before anything is read."""
-        every, done = one.response.rows, 0
-        for motion in self._marched(one):
+    def _stretches(self, one: Prepared) -> Stretches:
+        return Stretches(one, self._packing, self.block_rows)
+
+    def _go_through(
+        self, one: Prepared, add: Callable[[ResponseResult], None]
+    ) -> tuple[RunEnd, Stretches]:
+        """The end of a motion, and what its stretches tell; `add` takes its rows block by block,
+        before anything is read."""
+        every, done, stretches = one.response.rows, 0, self._stretches(one)
+        for motion, _ in stretches.blocks():
             report = motion.report
             end = run_end(one, report, motion.count if report.is_over else every)
             count = min(motion.states.shape[1], end.rows - done)
             if count > 0:
                 add(block_of(one, motion, end, Span(done, count, every)))
             done += count
-        return end
+        return end, stretches
 
     @property
     def energy_error(self) -> float:
@@ -202,74 +220,3 @@ class ResponseBlocks:
         found = self._taken
         error = None if found is None else found.error(np.array([found.missing]))
         return float("nan") if error is None else float(error[0])
-
-    def _marched(self, one: Prepared) -> Iterator[MotionRows]:
-        """A motion in blocks of rows, as they are reached; the report of the last one is that of
-        the motion, and the others are under way."""
-        march = _March(one, self._packing, self.block_rows)
-        try:
-            for motion in march:
-                if not motion.report.first and limits_of(one.response):
-                    motion = self._from_limit(one, motion)
-                ended = at_jump(one.chosen, one.response, motion)
-                yield before_jump(one.response, ended)
-                if motion.report.is_over:
-                    return
-        finally:
-            march.leave()
-
-    def _from_limit(self, one: Prepared, motion: MotionRows) -> MotionRows:
-        """The first rows of a motion, which is over where it begins at a limit and goes beyond."""
-        place = Span(0, 1, one.response.rows)
-        end = run_end(one, motion.report, motion.report.rows)
-        return stopped_at_start(block_of(one, motion, end, place), motion)
-
-
-class _March:
-    """A motion that is integrated in a thread, a block ahead of whoever takes its rows."""
-
-    def __init__(self, one: Prepared, packing: Packing, rows: int) -> None:
-        self._one, self._packing, self._rows = one, packing, rows
-        self._found: SimpleQueue[MotionRows | BaseException] = SimpleQueue()
-        self._free, self._is_left = Semaphore(1), False
-        # an interrupt ends the process without it
-        self._thread = Thread(target=self._run, name="response", daemon=True)
-        atexit.register(self.leave)  # it must not come back to an interpreter that has ended
-        self._thread.start()
-
-    def __iter__(self) -> Iterator[MotionRows]:
-        """The blocks of rows."""
-        while True:
-            found = self._found.get()
-            if isinstance(found, BaseException):
-                raise found
-            is_last = found.report.is_over
-            yield found
-            if is_last:
-                return
-            del found
-            self._free.release()
-
-    def leave(self) -> None:
-        """Ends the thread, whether or not all rows have been taken."""
-        atexit.unregister(self.leave)
-        self._is_left = True
-        self._free.release()
-        self._thread.join()
-
-    def _run(self) -> None:
-        try:
-            (last,) = integrated_rows([self._one], self._packing, self._rows, self._take)
-        except BaseException as error:  # raised where rows are taken
-            self._found.put(error)
-        else:
-            self._found.put(last)
-
-    def _take(self, first: int, rows: int, arrays: list[NDArray[Any]]) -> bool:
-        own = [np.array(array[0, ..., :rows], order="C") for array in arrays]
-        for array in arrays:
-            # where no row is written there is none
-            array.fill(np.nan if array.dtype == np.float64 else 0)
-        self._found.put(motion_of(under_way(first, rows, len(own[0])), own))
-        self._free.acquire()
-        return not self._is_left

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from math import isfinite, nan, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,19 +20,20 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import ORDERS, CrossingEnd, Limit, eliminated, is_angle
 from mechkin_cli.plan import Demand
-from mechkin_cli.record import NamedTuple
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response.integration import Beginning, Impact, Rebound
-from mechkin_cli.response.report import MotionEnd, MotionRows
+from mechkin_cli.response.march import with_columns
+from mechkin_cli.response.report import MotionEnd, MotionRows, under_way
 from mechkin_cli.session import Ask, Chart
 from mechkin_cli.units import FORCE, MOMENT, TIME
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.mechanism import ResponseProblem
+    from mechkin_cli.response.report import MotionReport
     from mechkin_cli.response.result import ResponseResult
     from mechkin_cli.session import RowInputs
     from mechkin_cli.show import Floats
+    from mechkin_cli.units import UnitSystem
 
 
 class _Touch(NamedTuple):
@@ -82,44 +83,35 @@ def stopped_at_start(result: ResponseResult, moved: MotionRows) -> MotionRows:
         if abs(value - side * stop.at) > tolerances.AT_LIMIT * unit or not outward:
             continue
 
-        def cut(array: NDArray[Any]) -> NDArray[Any]:
-            width = max(array.shape[-1], 2)
-            none = np.nan if array.dtype == np.float64 else 0
-            found = np.full((*array.shape[:-1], width), none, dtype=array.dtype)
-            found[..., :2] = array[..., :1]  # the stop's own place, too
-            return found
-
-        report = moved.report._replace(
+        first = moved.states[:, 0].tolist()
+        report = under_way(0, 1, len(first))._replace(
             end=MotionEnd.STOPPED,
             stop=number,
-            rows=1,
             time=float(result.response.moments.part(slice(1)).values[0]),
-            crossings=[],
-            touches=[],
+            last=first,
         )
-        chart = Chart(*(cut(array) for array in moved.chart))
-        states, turns, work = (cut(array) for array in (moved.states, moved.turns, moved.work))
-        return MotionRows(report, states, chart, turns, work, cut(moved.flags))
+        # the stop's own place, too
+        return replace(with_columns(moved, [0, 0]), report=report)
     return moved
 
 
 class ImpactAt:
-    """The impact at the last row of a response that a limit has ended.
+    """The impact at a row of a response that a limit has ended.
 
     Args:
-        result: the rows up to it.
+        result: that row.
         number: of the limit's stop.
     """
 
     def __init__(self, result: ResponseResult, number: int) -> None:
         self.result, self.session = result, result.session
         self.words = result.response.stops[number].words
-        self.row, self.charts = result.rows - 1, len(result.chart.rates)
+        self.charts = len(result.chart.rates)
         self.touches = sorted(self._touched(number), key=lambda touch: touch.stop != number)
         known = result.problem.quantities()
         self.rates_of = [known[f"{touch.limit.name}_dot"] for touch in self.touches]
         n = self.charts
-        self.before = result.chart.rates[:, self.row]
+        self.before = result.chart.rates[:, 0]
         pairs = [(i, j) for i in range(n) for j in range(i)]
         cases = np.zeros((n, 1 + n + len(pairs)))
         cases[:, 0] = self.before
@@ -209,12 +201,12 @@ class ImpactAt:
         """Its moment, s."""
         moments = self.result.problem.motion.time
         assert moments is not None
-        return float(moments.values[self.row])
+        return float(moments.values[0])
 
     @property
     def began_resting(self) -> bool:
         """Whether it is the first row of the response, and no coordinate comes to its limit."""
-        return not self.row and all(
+        return not self.result.row_states.span.first and all(
             rate <= still for rate, still in zip(self.outward, self._still, strict=True)
         )
 
@@ -312,7 +304,7 @@ class ImpactAt:
             if not isinstance(stop, CrossingEnd) or stop.limit is None or stop.at is None:
                 continue
             side = 1.0 if stop.direction == "up" else -1.0
-            value = np.asarray(self.result.quantity(stop.limit.name).value)[self.row]
+            value = np.asarray(self.result.quantity(stop.limit.name).value)[0]
             unit = 1.0 if is_angle(stop.limit.coordinate) else self.session.layout.length
             if k == number or side * (float(value) - stop.at) >= -tolerances.AT_LIMIT * unit:
                 yield _Touch(stop.limit, side, k)
@@ -320,7 +312,7 @@ class ImpactAt:
     def _begun(self, columns: Floats) -> Beginning:
         """How a motion begins here, by the rates of all columns."""
         return Beginning(
-            np.ascontiguousarray(self.result.row_states.states[:, self.row]),
+            np.ascontiguousarray(self.result.row_states.states[:, 0]),
             np.ascontiguousarray(columns),
             self.tangents,
         )
@@ -330,14 +322,14 @@ class ImpactAt:
         count = rates.shape[1]
         states, turns = self.result.row_states.states, self.result.row_states.turns
         rows = self.session.row_inputs(states, turns, self.session.inputs)
-        rows = rows.at(np.full(count, self.row))
+        rows = rows.at(np.zeros(count, dtype=np.intp))
         moving = np.arange(count) == 0
         chart = self.result.chart
         none = np.zeros(rates.shape)
         return rows._replace(
             rates=None if rows.rates is None else np.where(moving, rows.rates, 0.0),
             chart=Chart(
-                np.repeat(chart.direction[:, [self.row]], count, axis=1),
+                np.repeat(chart.direction, count, axis=1),
                 rates,
                 none if accelerations is None else accelerations,
                 np.zeros((len(chart.friction), count)),
@@ -515,48 +507,26 @@ def _dot(one: Sequence[float], other: Sequence[float]) -> float:
     return total
 
 
-def joined(before: MotionRows, later: MotionRows, work: tuple[float, float]) -> MotionRows:
-    """A motion and the one that goes on from its last place, whose first row is that place, or
-    already the next row; `work` is what the impact between them put in and lost."""
-    own, more, last = before.report, later.report, before.count - 1
-    rows = own.rows
-    known = later.states.shape[-1] - (before.states.shape[-1] - rows)
-    put = np.array(work)[:, None] + before.work[:, [last]]
-
-    def both(first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        found = np.array(first)
-        found[..., rows:] = second[..., known:]
-        return found
-
-    offset = before.turns[:, [last]] - later.turns[:, [0]]
-    report = more._replace(
-        rows=rows + more.rows - known,
-        energy=max(own.energy, more.energy),
-        stiff=own.stiff or more.stiff,
-        stiff_from=own.stiff_from if own.stiff else more.stiff_from,
-        evaluations=own.evaluations + more.evaluations,
-        steps=own.steps + more.steps,
-        rejections=own.rejections + more.rejections,
-        crossings=[*own.crossings, *more.crossings],
-        touches=[*own.touches, *more.touches],
-    )
-    chart = Chart(*(both(a, b) for a, b in zip(before.chart, later.chart, strict=True)))
-    return MotionRows(
-        report,
-        both(before.states, later.states),
-        chart,
-        both(before.turns, later.turns + offset),
-        both(before.work, later.work + put),
-        both(before.flags, later.flags),
+def gone_on(before: MotionReport, later: MotionReport) -> MotionReport:
+    """The report of a motion with that of the one that goes on from its last place."""
+    return later._replace(
+        energy=max(before.energy, later.energy),
+        stiff=before.stiff or later.stiff,
+        stiff_from=before.stiff_from if before.stiff else later.stiff_from,
+        evaluations=before.evaluations + later.evaluations,
+        steps=before.steps + later.steps,
+        rejections=before.rejections + later.rejections,
+        crossings=[*before.crossings, *later.crossings],
+        touches=[*before.touches, *later.touches],
     )
 
 
 def impact_notes(
-    result: ResponseResult, impacts: Sequence[Impact], at_last: Sequence[Limit]
+    units: UnitSystem, impacts: Sequence[Impact], at_last: Sequence[Limit]
 ) -> list[Diagnostic]:
     """How often each coordinate rebounds and with what impulse, and which comes to rest, those
     `at_last` for good."""
-    units, notes = result.units, []
+    notes = []
     for limit in dict.fromkeys(limit for impact in impacts for limit in impact.limits):
         own = [impact for impact in impacts if limit in impact.limits]
         at = [units.text(impact.time, TIME) for impact in own]

@@ -135,6 +135,10 @@ def _read(session: Session, wanted: Sequence[Wanted], rebound: Rebound, shift: i
     """The components of some reactions over an impact, in SI."""
     readout = session.readout(wanted)
     demand = demand_of(session.problem.mechanism, wanted)
-    batch = session.run(rebound.rows, Ask(demand, readout, shift=shift, iterations=0))
+    assert rebound.rows.chart is not None
+    # nothing rubs in that session
+    chart = rebound.rows.chart._replace(friction=rebound.rows.chart.friction[:0])
+    rows = rebound.rows._replace(chart=chart)
+    batch = session.run(rows, Ask(demand, readout, shift=shift, iterations=0))
     assert batch.outputs is not None
     return [batch.outputs[readout.slots[quantity.name], 0] for quantity in wanted]

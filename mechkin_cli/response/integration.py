@@ -7,8 +7,8 @@ gets a verdict, what was measured, and the cure (`ending`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,11 +20,13 @@ from mechkin_cli.mechanism import (
     CrossingEnd,
     DeadCentreEnd,
     SlopeEnd,
+    SpacedMoments,
     dimension_of,
     rubbing_words,
 )
 from mechkin_cli.plan import Demand, Layout, kink_laws
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.response.march import RowTimes
 from mechkin_cli.response.report import Fault, MotionEnd, MotionReport, MotionRows, motion_of
 from mechkin_cli.session import (
     RESIDUAL_TESTS,
@@ -46,10 +48,9 @@ from mechkin_cli.units import TIME, UnitSystem
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
     from mechkin_cli.mechanism import Limit, LoadLaw, Problem, ResponseProblem, Rubbing, Stop
+    from mechkin_cli.response.march import Taker
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension
 
@@ -121,15 +122,10 @@ def with_loads(session: Session, problem: Problem) -> Session:
     return Session(problem, structure, size=session.size, packing=session.packing)
 
 
-Taker = Callable[[int, int, list["NDArray[Any]"]], bool]
-"""Takes a block of rows, the number of its first one and how many they are, out of the kernel's
-arrays, which the next ones are then written into; False: no more are wanted."""
-
-
 def integrate(
     starts: Sequence[tuple[Plan, Beginning]],
     begin: float,
-    times: Floats,
+    times: Floats | RowTimes,
     *,
     stops: Sequence[WatchedStop] = (),
     driven: DrivenLaws | None = None,
@@ -140,7 +136,6 @@ def integrate(
     method: int = 0,
     block: int = 0,
     taker: Taker | None = None,
-    spaced: _kernel.SpacedTimes | None = None,
 ) -> list[MotionRows]:
     """Integrates motions of plans of one structure, each from its beginning, packed into lanes,
     from time `begin` (s) over the rows' `times` (rows,).
@@ -148,12 +143,21 @@ def integrate(
     `stops` go with the values that the plans watch, in order; `driven` with their inputs;
     `straight`: branch points are passed along the smooth continuation. A `taker` takes the rows of
     one motion in blocks of so many as they are reached, all but the last of them, which are given
-    back: their first one has the number `report.first`. With one the times may be `spaced`, of
-    which none is held.
+    back: their first one has the number `report.first`. With one, none of equally spaced times is
+    held.
 
     Raises:
         ValueError: times that do not rise from `begin` on.
     """
+    spaced, some, parts, last = None, (0, -1), 1, None
+    if isinstance(times, RowTimes) and taker:
+        some, parts, last = (times.first, times.rows), times.parts, times.last
+        moments = times.moments
+        spaced = moments.steps if isinstance(moments, SpacedMoments) else None
+        # those are of the kernel's making
+        times = (moments.part(slice(1)) if spaced else moments).values
+    elif isinstance(times, RowTimes):
+        times = times.between(0, times.size, begin)
     reports, *arrays = _kernel.respond(
         plans=[plan for plan, _ in starts],
         state=np.ascontiguousarray([start.state for _, start in starts]),
@@ -179,6 +183,9 @@ def integrate(
         threads=threads_for(len(starts), packing.threads),
         block=block,
         taker=taker,
+        some=some,
+        parts=parts,
+        last=last,
     )
     motions = []
     for number, fields in enumerate(reports):

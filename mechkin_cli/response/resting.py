@@ -8,7 +8,6 @@ coordinate; it is told as effort there, and acts on rows as a load over time.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,18 +24,27 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.plan import FrictionTold, demand_of
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response.integration import Beginning, driven_laws, integrate, watched_stop
+from mechkin_cli.response.march import (
+    RowTimes,
+    beginning_of,
+    first_row,
+    marched,
+    taken,
+    with_columns,
+)
 from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.session import Ask, Chart, KernelInputs
 from mechkin_cli.structure import holding
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import DrivenLaws
-    from mechkin_cli.mechanism import Limit, ResponseProblem
+    from mechkin_cli.mechanism import Limit, Moments, ResponseProblem, SpacedMoments
     from mechkin_cli.response.integration import WatchedStop
+    from mechkin_cli.response.march import Taker
     from mechkin_cli.session import Packing, Session
     from mechkin_cli.show import Floats
 
@@ -49,6 +57,12 @@ class Contact(NamedTuple):
     times: Floats
     forces: Floats
     others: tuple[Floats, ...] = ()
+
+    def as_other(self, number: int | None) -> Floats:
+        """The forces of a number that are as good; its own without so many."""
+        if number is None or number >= len(self.others):
+            return self.forces
+        return self.others[number]
 
 
 class _Held(NamedTuple):
@@ -80,6 +94,43 @@ def _place(free: Session, limit: Limit) -> tuple[int, int]:
     layout = free.layout
     joint = layout.mechanism.joints[limit.joint]
     return layout.edge_number[limit.joint], joint.freedom_number(limit.coordinate)
+
+
+class _Leaves(NamedTuple):
+    """The moment (s) from which on a limit would pull, and the number of its stop."""
+
+    time: float
+    stop: int
+
+
+class _Look:
+    """Looks for the first moment at which a limit pulls, window by window.
+
+    Args:
+        pushes: how the limits push (limits, 1) where the motion begins, at the moment `begin` (s).
+    """
+
+    def __init__(self, pushes: Floats, begin: float) -> None:
+        self._begun, self._last = pushes, begin
+        self._most = np.zeros(len(pushes))
+        self.found: tuple[float | None, float, int] | None = None
+
+    def over(self, pushes: Floats, times: Floats) -> bool:
+        """Adds moments and how limits push there (limits, moments): whether none pulls. Where one
+        does, `found` has the moment before it, None where the motion begins with it, its own, and
+        the limit's number. What is rounding goes by the largest force up to the window's end."""
+        pushes = np.concatenate([self._begun, pushes], axis=1)
+        times = np.concatenate([[self._last], times])
+        self._most = np.fmax(self._most, np.nanmax(np.abs(pushes), axis=1, initial=0.0))
+        least = tolerances.KINK_ROUNDING * self._most
+        pulling = np.flatnonzero((pushes < -least[:, None]).any(axis=0))
+        self._begun, self._last = pushes[:, -1:], float(times[-1])
+        if not pulling.size:
+            return True
+        k = int(pulling[0])  # 0 in the first window alone: the others begin with what did not pull
+        before = float(times[k - 1]) if k else None
+        self.found = before, float(times[k]), int(np.argmin(pushes[:, k]))
+        return False
 
 
 class RestingMotion:
@@ -120,29 +171,48 @@ class RestingMotion:
         first[self.columns] = 0.0
         self.begun = Beginning(begun.state, first, along(begun.tangents, self.columns))
 
-    def onward(self, begin: float, times: Floats) -> tuple[MotionRows, list[Contact]]:
-        """The motion from a moment (s) on, its first row, over rows at `times` (rows,), as one of
-        the free coordinates; up to where a limit would have to pull, which then is its stop. And
-        the forces of the limits at its rows."""
-        at = self._leaves(begin, times)
-        reached = times if at is None else times[times <= at[0]]
-        own = np.array([begin, *reached])
-        if at is not None and at[0] > own[-1]:
-            own = np.append(own, at[0])
-        moved = self._moved(own) if at is None else _widened(self._moved(own), times.size + 2)
-        forces = self._forces(moved, own)
-        if at is not None:
-            moved = _left(moved, reached.size + 1, own.size - 1, *at)
-        count = 1 + min(reached.size, moved.report.rows - 1)
-        contacts = self._contacts(own[:count], [one[:, :count] for one in forces])
-        if moved.report.end is MotionEnd.STOPPED and at is None:
-            last = np.array([moved.report.time])
-            contacts += self._contacts(last, self._forces(moved, last, [moved.report.rows]))
-        return self._as_free(moved), contacts
+    def onward(
+        self,
+        begin: float,
+        moments: Moments | SpacedMoments,
+        first: int,
+        start: MotionRows,
+        block: int,
+    ) -> Iterator[tuple[MotionRows, list[Contact]]]:
+        """The motion from a moment (s) on over the rows of a response from number `first` on, as
+        one of the free coordinates and in blocks; up to where a limit would have to pull, which
+        then is its stop. And the forces of the limits at the rows, and where it begins."""
+        at = self._leaves(begin, moments, first, start)
+        every = RowTimes(moments, first, moments.rows - first)
+        times = every if at is None else _until(every, at.time, begin)
+        contacts = self._contacts(np.array([begin]), self._forces(start, np.array([begin])))
+        if not times.size:
+            assert at is not None
+            moved = self._moved(begin, np.array([begin]))
+            yield self._as_free(_left(moved, 0, at.time, at.stop)), contacts
+            return
+
+        def run(block: int, taker: Taker | None) -> MotionRows:
+            return self._moved(begin, times, block, taker)
+
+        for moved in marched(run, times.size, block):
+            report = moved.report
+            rows = min(times.rows, report.rows) - report.first
+            own = times.between(report.first, report.first + rows, begin)
+            contacts += self._contacts(own, self._forces(moved, own))
+            if report.end is MotionEnd.STOPPED and at is None:
+                last, place = np.array([report.time]), [report.rows - report.first]
+                contacts += self._contacts(last, self._forces(moved, last, place))
+            if at is not None and report.is_over and report.rows == times.size:
+                moved = _left(moved, times.rows, at.time, at.stop)
+            yield self._as_free(moved), contacts
+            contacts = []
 
     def _contacts(self, times: Floats, forces: Sequence[Floats]) -> list[Contact]:
         """The rests at all limits, by forces of the limits that push and of each that others may
         stand for."""
+        if not times.size:
+            return []
         limits = list(
             dict.fromkeys(each for one in (self.held, *self.others) for each in one.limits)
         )
@@ -161,11 +231,18 @@ class RestingMotion:
             for limit in limits
         ]
 
-    def _moved(self, times: Floats) -> MotionRows:
-        """The motion from the first of some moments on."""
+    def start(self, begin: float, moments: Moments | SpacedMoments, first: int) -> MotionRows:
+        """The row in which the motion begins."""
+        times = beginning_of(begin, moments, first)
+        return first_row(lambda block, taker: self._moved(begin, times, block, taker))
+
+    def _moved(
+        self, begin: float, times: Floats | RowTimes, block: int = 0, taker: Taker | None = None
+    ) -> MotionRows:
+        """The motion from a moment on."""
         (moved,) = integrate(
             [(self.held.session.plan, self.begun)],
-            float(times[0]),
+            begin,
             times,
             stops=[self._watched(number) for number in range(len(self.response.stops))],
             driven=self.held.laws,
@@ -173,6 +250,8 @@ class RestingMotion:
             fixed_step=self.response.fixed_step,
             straight=self.free.problem.assembly.straight,
             packing=self.packing,
+            block=block,
+            taker=taker,
         )
         return moved
 
@@ -206,9 +285,8 @@ class RestingMotion:
         if not rows.size:
             return found
         orders = np.zeros((3, len(session.graph.inputs), rows.size))
-        for column, time in enumerate(times[reached].tolist() if laws else ()):
-            assert laws is not None
-            orders[:, :, column] = np.array(laws.at(time)).T
+        if laws is not None:
+            orders = laws.over(np.ascontiguousarray(times[reached]))
         inputs = KernelInputs.of(
             problem, orders[0], orders[1], orders[2], np.zeros(orders[0].shape)
         )
@@ -225,39 +303,57 @@ class RestingMotion:
             own[reached] = batch.outputs[readout.slots[quantity.name].start]
         return found
 
-    def _pushes(self, times: Floats) -> Floats:
-        """How the limits push at moments from the first on (limits, moments); nan beyond its
-        end."""
-        forces = self._efforts(self.held, self._moved(times), times, None)
+    def _pushes(self, moved: MotionRows, times: Floats) -> Floats:
+        """How the limits push at the rows of a motion (limits, rows); nan beyond its end."""
+        forces = self._efforts(self.held, moved, times, None)
         return np.array([-side * one for side, one in zip(self.sides, forces, strict=True)])
 
-    def _leaves(self, begin: float, times: Floats) -> tuple[float, int] | None:
-        """The first moment up to the last row at which a limit would pull, and the number of its
-        stop; None where none does."""
-        ends = np.array([begin, *times])
-        parts = np.linspace(0.0, 1.0, SAMPLES + 1)[1:]
-        sampled = np.concatenate([[begin], *(a + (b - a) * parts for a, b in pairwise(ends))])
-        found = self._pushes(sampled)
-        least = tolerances.KINK_ROUNDING * np.nanmax(np.abs(found), axis=1, initial=0.0)
-        pulling = np.flatnonzero((found < -least[:, None]).any(axis=0))
-        if not pulling.size:
+    def _leaves(
+        self, begin: float, moments: Moments | SpacedMoments, first: int, start: MotionRows
+    ) -> _Leaves | None:
+        """Where a limit would pull first; None where none does up to the last row."""
+        look = _Look(self._pushes(start, np.array([begin])), begin)
+        rows, parts = moments.rows - first, SAMPLES if moments.rows <= tolerances.LONG_RUN else 1
+        times = RowTimes(moments, first, rows, parts)
+        near = parts * tolerances.SAME_MOMENT * abs(times.row(0))
+        if times.row(0) - begin <= near:
+            times = RowTimes(moments, first + 1, rows - 1, parts)
+
+        def look_at(moved: MotionRows) -> bool:
+            report = moved.report
+            sampled = times.between(report.first, report.rows, begin)
+            if report.end is MotionEnd.STOPPED:
+                sampled = np.append(sampled, report.time)
+            own = with_columns(moved, slice(sampled.size))
+            return look.over(self._pushes(own, sampled), sampled)
+
+        if times.size:
+
+            def take(first: int, rows: int, arrays: list[NDArray[Any]]) -> bool:
+                return look_at(taken(first, rows, arrays))
+
+            last = self._moved(begin, times, WINDOW, take)
+            if look.found is None:
+                look_at(last)
+        else:
+            look.over(np.zeros((len(self.sides), 0)), np.array([]))
+        if look.found is None:
             return None
-        k = int(pulling[0])
-        number = int(np.argmin(found[:, k]))
-        if k == 0:
-            return begin, self.stops[number]
-        low, high = float(sampled[k - 1]), float(sampled[k])
+        low, high, which = look.found
+        if low is None:
+            return _Leaves(begin, self.stops[which])
         while True:
             inner = np.unique(low + (high - low) * np.linspace(0.0, 1.0, SAMPLES + 1))
             if inner.size < 3:
-                return high, self.stops[number]
+                return _Leaves(high, self.stops[which])
             lead = np.array([begin] if inner[0] > begin else [])
-            found = self._pushes(np.concatenate([lead, inner]))[:, lead.size :]
+            sampled = np.concatenate([lead, inner])
+            found = self._pushes(self._moved(begin, sampled), sampled)[:, lead.size :]
             pulls = np.flatnonzero((found < 0.0).any(axis=0))
             k = int(pulls[0]) if pulls.size else inner.size - 1
-            number = int(np.argmin(found[:, k])) if pulls.size else number
+            which = int(np.argmin(found[:, k])) if pulls.size else which
             if k == 0 or (float(inner[k - 1]), float(inner[k])) == (low, high):
-                return (low if k == 0 else high), self.stops[number]
+                return _Leaves(low if k == 0 else high, self.stops[which])
             low, high = float(inner[k - 1]), float(inner[k])
 
     def _friction(self, told: Floats) -> Floats:
@@ -294,7 +390,12 @@ FAR = 1e3
 size or of a radian: rounding never meets it."""
 
 SAMPLES = 16
-"""Parts of a step from row to row, and of each bracket, at which forces are looked at."""
+"""Parts of a step from row to row, and of each bracket, at which forces are looked at; of the steps
+of a long run, whose rows are samples themselves, there are none."""
+
+WINDOW = 1024
+"""Moments at which forces are looked at before more are asked for: a rest is short where a limit
+soon pulls, and so many take 10 KB for each state."""
 
 
 def along(tangents: Floats, columns: Sequence[int]) -> Floats:
@@ -316,47 +417,31 @@ def along(tangents: Floats, columns: Sequence[int]) -> Floats:
     return np.array(left).reshape(len(left), tangents.shape[1])
 
 
-def _widened(moved: MotionRows, width: int) -> MotionRows:
-    """With columns up to a width, those more without a row."""
-
-    def wide(array: NDArray[Any]) -> NDArray[Any]:
-        none = np.nan if array.dtype == np.float64 else 0
-        found = np.full((*array.shape[:-1], max(width, array.shape[-1])), none, dtype=array.dtype)
-        found[..., : array.shape[-1]] = array
-        return found
-
-    return _each(moved, wide)
+def _until(times: RowTimes, at: float, begin: float) -> RowTimes:
+    """Those up to a moment, which is the last one."""
+    low, high = 0, times.rows
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (middle + 1, high) if times.row(middle) <= at else (low, middle)
+    before = times.row(low - 1) if low else begin
+    return times._replace(rows=low, last=at if at > before else None)
 
 
-def repeated(moved: MotionRows) -> MotionRows:
-    """A motion with its first row twice: as the place where it begins, and as the row of the
-    response at that moment."""
-    more = _each(moved, lambda array: np.concatenate([array[..., :1], array], axis=-1))
-    return replace(more, report=moved.report._replace(rows=moved.report.rows + 1))
-
-
-def _left(moved: MotionRows, rows: int, place: int, at: float, stop: int) -> MotionRows:
-    """A motion of some rows that ends at a stop, at the moment of column `place`."""
-    if moved.report.rows < place + 1:
-        return moved  # it has ended before
-
-    def cut(array: NDArray[Any]) -> NDArray[Any]:
-        found = array.copy()
-        found[..., rows] = array[..., place]
-        return found
-
+def _left(moved: MotionRows, rows: int, at: float, stop: int) -> MotionRows:
+    """A motion that ends at a stop at some moment, which its last column has, behind some rows."""
+    place = rows - moved.report.first
+    last = max(min(place, moved.report.rows - moved.report.first - 1), 0)
+    columns = [*range(place), last]
     report = moved.report._replace(end=MotionEnd.STOPPED, time=at, stop=stop, rows=rows)
-    return replace(_each(moved, cut), report=report)
-
-
-def _each(moved: MotionRows, change: Any) -> MotionRows:
-    chart = Chart(*(change(array) for array in moved.chart))
-    states, turns, work = (change(array) for array in (moved.states, moved.turns, moved.work))
-    return MotionRows(moved.report, states, chart, turns, work, change(moved.flags))
+    return replace(with_columns(moved, columns), report=report)
 
 
 def with_contacts(
-    response: ResponseProblem, contacts: Sequence[Contact], times: Floats, other: int | None = None
+    response: ResponseProblem,
+    contacts: Sequence[Contact],
+    limits: Iterable[Limit],
+    times: Floats,
+    other: int | None = None,
 ) -> ResponseProblem:
     """The response with the forces of limits among its efforts: laws that have their values at the
     rows' moments, 0 where nothing rests.
@@ -364,18 +449,27 @@ def with_contacts(
     Args:
         response: the file's.
         contacts: the rests at limits.
+        limits: those at which something rests, whether at these rows or not.
         times: moments of the rows (rows,), s.
         other: the number of the forces to take from those that are as good; of a contact without
             so many its own.
     """
-    for limit in dict.fromkeys(one.limit for one in contacts):
+    for limit in limits:
         values = np.zeros(times.size)
-        for one in contacts:
-            if one.limit == limit:
-                is_other = other is not None and other < len(one.others)
-                forces = one.others[other] if is_other else one.forces  # type: ignore[index]
-                values[np.isin(times, one.times)] = forces[np.isin(one.times, times)]
-        curve = joined_curve(times.tolist(), values.tolist(), "linear", "natural")
+        own = [one for one in contacts if one.limit == limit]
+        if own:
+            at = np.concatenate([one.times for one in own])
+            forces = np.concatenate([one.as_other(other) for one in own])
+            place = np.searchsorted(times, at).clip(max=times.size - 1)
+            is_row = times[place] == at
+            values[place[is_row]] = forces[is_row]
+        # no row is the last point, whose piece would be the one before it
+        at = np.append(times, times[-1] + max(1.0, abs(float(times[-1]))))
+        values = np.append(values + 0.0, 0.0)
+        # within equal ones a straight line has the very value
+        bends = np.ones(at.size, dtype=np.bool_)
+        bends[1:-1] = (values[1:-1] != values[:-2]) | (values[1:-1] != values[2:])
+        curve = joined_curve(at[bends].tolist(), values[bends].tolist(), "linear", "natural")
         law = LoadLaw(("time",), limit.place, curve=curve)
         load = JointLoad(limit.joint, limit.coordinate, Varying(len(response.load_laws)))
         response = replace(

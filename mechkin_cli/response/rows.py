@@ -19,7 +19,6 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.response.integration import ending
-from mechkin_cli.response.jumps import before_jump
 from mechkin_cli.response.report import MotionEnd
 from mechkin_cli.response.result import ResponseResult
 from mechkin_cli.session import Chart, input_unit
@@ -121,21 +120,6 @@ def _stopped(free: Session, item: DrivenInput, at: tuple[float, float, float]) -
     )
 
 
-def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
-    """The rows with their verdicts, before anything is read: all of them, or up to a stop."""
-    moved = before_jump(one.response, moved)
-    end = run_end(one, moved.report, moved.count)
-    return block_of(one, moved, end, Span(0, end.rows, end.rows))
-
-
-def why_held(one: Prepared) -> str:
-    """Why all rows must be held at once; "" where they need not. Behind an impact the motion is
-    another one."""
-    if any(limit.restitution is not None for limit in limits_of(one.response)):
-        return "as its motion may turn at limits"
-    return ""
-
-
 def limits_of(response: ResponseProblem) -> list[Limit]:
     """The limits at which it may end."""
     stops = [stop for stop in response.stops if isinstance(stop, CrossingEnd)]
@@ -156,8 +140,6 @@ def refuse_many_rows(one: Prepared, variants: int = 1) -> None:
             "take them block by block with stream(run=...), or write them with mechkin analyze "
             "--format csv or parquet"
         )
-        if why := why_held(one):
-            cure = f"it is held whole, {why}: take a larger step"
         raise UsageError(
             f"the response {one.response.name} has too many rows to be held at once, {rows} (limit "
             f"{most}); {cure}"
@@ -193,8 +175,9 @@ def run_end(one: Prepared, report: MotionReport, reached: int) -> RunEnd:
 
 
 def block_of(one: Prepared, moved: MotionRows, end: RunEnd, place: Span) -> ResponseResult:
-    """Some rows of a motion, with which the arrays of `moved` begin, and their verdicts; with the
-    last ones comes what is said of the whole motion."""
+    """Some rows of a motion, with which the arrays of `moved` begin, and their verdicts. What is
+    said of the whole motion comes with the first ones where its end is known before, as of one with
+    stops, else with the last ones."""
     response, chosen, free, report = one.response, one.chosen, one.free, end.report
     count, is_last = place.rows, place.first + place.rows == end.rows
     part = slice(0, count)
@@ -207,7 +190,8 @@ def block_of(one: Prepared, moved: MotionRows, end: RunEnd, place: Span) -> Resp
     rows.turns = np.concatenate([moved.turns[:, part], tree])
     status, notes = ending(chosen, free, response, report, np.array(report.last))
     rows.status[~reached] = status
-    rows.diagnostics += notes if is_last else []
+    tells = not place.first if response.stops else is_last
+    rows.diagnostics += notes if tells else []
     energy = free.layout.length * free.layout.length
     events = [""] * count
     if is_last and end.is_stopped and count:

@@ -12,43 +12,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
-from mechkin_cli.mechanism import (
-    MotionInputs,
-    SpacedMoments,
-    read_for,
-    response_problem,
-)
+from mechkin_cli.mechanism import MotionInputs, read_for, response_problem
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import replace
-from mechkin_cli.response.impacts import (
-    ImpactAt,
-    impact_notes,
-    joined,
-    stopped_at_start,
-    touched_limit,
-)
 from mechkin_cli.response.integration import (
     Beginning,
-    Rebound,
-    Taker,
     driven_laws,
     free_session,
-    integrate,
     watched_stop,
     with_loads,
 )
-from mechkin_cli.response.jumps import BendsPassed, at_jump
-from mechkin_cli.response.report import MotionEnd, MotionReport, MotionRows
-from mechkin_cli.response.resting import (
-    Contact,
-    RestingMotion,
-    repeated,
-    with_contacts,
-)
+from mechkin_cli.response.jumps import BendsPassed
 from mechkin_cli.response.result import ENERGIES, FreeResult, ResponseResult
-from mechkin_cli.response.rows import Prepared, limits_of, refuse_many_rows, rows_of
+from mechkin_cli.response.rows import Prepared, refuse_many_rows
 from mechkin_cli.response.start import beginning
+from mechkin_cli.response.stretches import gathered, integrated_rows
 from mechkin_cli.session import Ask, Chart, Packing, Session, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
@@ -65,8 +43,8 @@ from mechkin_cli.sweep import (
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Limit, Problem, ResponseProblem, Wanted
-    from mechkin_cli.show import Floats
+    from mechkin_cli.mechanism import Problem, ResponseProblem, Wanted
+    from mechkin_cli.response.report import MotionReport
 
 
 ANY_PACKING = Packing()
@@ -152,7 +130,7 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
         together = [variants[number] for number in numbers]
         for number, rows in zip(numbers, integrated_rows(together, packing), strict=True):
             one = variants[number]
-            results[number] = _to_jumps(one, _rebounding(one, rows, packing), packing)
+            results[number] = _to_jumps(one, gathered(one, packing, rows), packing)
     return [results[number] for number in range(len(variants))]
 
 
@@ -170,39 +148,6 @@ def _shared(one: Prepared, number: int) -> object:
     )
 
 
-def integrated_rows(
-    together: Sequence[Prepared], packing: Packing, block: int = 0, taker: Taker | None = None
-) -> list[MotionRows]:
-    """The motions of variants that share what the kernel takes once, as they begin; the `taker` is
-    that of `integrate`."""
-    first = together[0]
-    response, moments = first.response, first.response.moments
-    spaced = moments.steps if taker and isinstance(moments, SpacedMoments) else None
-    times = moments.part(slice(1) if spaced else slice(None)).values
-    starts = []
-    for one in together:
-        assert one.begun is not None
-        plan = first.free.plan
-        if one is not first:
-            # of the same structure: plans of one call share it
-            plan = plan.with_constants(one.free.plan.constants).with_size(one.free.plan.size)
-        starts.append((plan, one.begun))
-    return integrate(
-        starts,
-        float(times[0]),
-        times,
-        stops=[watched_stop(stop) for stop in response.stops],
-        driven=first.driven,
-        tolerance=response.tolerance,
-        fixed_step=response.fixed_step,
-        straight=first.chosen.problem.assembly.straight,
-        packing=packing,
-        block=block,
-        taker=taker,
-        spaced=spaced,
-    )
-
-
 def _to_jumps(one: Prepared, result: ResponseResult, packing: Packing) -> ResponseResult:
     """The rows up to a place at which the slope of a function jumps, where the motion comes to one:
     no step across it is a motion."""
@@ -211,8 +156,7 @@ def _to_jumps(one: Prepared, result: ResponseResult, packing: Packing) -> Respon
     again = ended_at_jumps(one, passed, result.report)
     if again is one:
         return result
-    (moved,) = integrated_rows([again], packing)
-    return _rebounding(again, at_jump(again.chosen, again.response, moved), packing)
+    return gathered(again, packing)
 
 
 def ended_at_jumps(one: Prepared, passed: BendsPassed, report: MotionReport | None) -> Prepared:
@@ -223,129 +167,6 @@ def ended_at_jumps(one: Prepared, passed: BendsPassed, report: MotionReport | No
     response = replace(one.response, stops=(*one.response.stops, *ends))
     free = with_loads(one.free, replace(one.free.problem, response=response))
     return replace(one, response=response, free=free)
-
-
-def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
-    """The rows with those behind impacts at limits that have a restitution, and of rests there."""
-    result = rows_of(one, moved)
-    if limits_of(one.response):
-        moved = stopped_at_start(result, moved)
-        result = rows_of(one, moved)
-    rebounds: list[Rebound] = []
-    contacts: list[Contact] = []
-    at_last: tuple[Limit, ...] = ()
-    left: list[int] = []
-    unresolved: ImpactAt | None = None
-    met = 0
-    while (number := touched_limit(one.response, moved)) is not None:
-        touch = ImpactAt(result, number)
-        begin, times = touch.time, one.response.moments.values[moved.report.rows :]
-        if not times.size:
-            break
-        if met == tolerances.MOST_IMPACTS:
-            unresolved = touch
-            break
-        met += 1
-        unresolved = touch
-        # a limit that lets go gives no impulse
-        begun, work = touch.onward, (0.0, 0.0)
-        struck = None if left else touch.rebound()
-        if struck is not None:
-            begun, work = struck.begun, struck.work
-        elif not left:
-            break
-        later = _onward(one, begun, begin, times, packing)
-        resting = touch.resting(later.chart, left)
-        settled: list[int] = []
-        while resting is not None and not set(resting.settles) <= set(settled):
-            settled = list(dict.fromkeys([*settled, *resting.settles]))
-            struck = touch.rebound(settled)
-            if struck is None:
-                break
-            begun, work = struck.begun, struck.work
-            later = _onward(one, begun, begin, times, packing)
-            resting = touch.resting(later.chart, left)
-        if resting is None or (struck is None and not left):
-            break
-        if struck is not None:
-            held = touch.limits([*resting.held, *resting.beside])
-            impact = struck.impact._replace(held=held)
-            rebounds.append(struck._replace(impact=impact))
-        before, was, left, at_last = moved, left, [], touch.limits(resting.held)
-        if resting.held:
-            friction = later.chart.friction[:, 0]
-            own_rest = resting.held, resting.beside
-            motion = RestingMotion(one.free, one.response, *own_rest, begun, friction, packing)
-            later, own = motion.onward(begin, times)
-            contacts += own
-            if later.report.end is MotionEnd.STOPPED and later.report.stop in resting.held:
-                left = [*(was if later.report.time == begin else ()), later.report.stop]
-            if touch.began_resting:
-                # what began at rest does so in its first row, too
-                before = replace(moved, report=moved.report._replace(rows=moved.report.rows - 1))
-                later = repeated(later)
-        moved, unresolved = joined(before, later, work), None
-        result = rows_of(one, moved)
-    if contacts:
-        moving = result.problem.motion.time
-        assert moving is not None
-        result, *others = (
-            rows_of(
-                _loaded(one, with_contacts(one.response, contacts, moving.values, number)), moved
-            )
-            for number in (None, *range(max(len(each.others) for each in contacts)))
-        )
-        result.take_others([(each.session, each.response) for each in others])
-    if rebounds:
-        result.rebounds = tuple(rebounds)
-        result.row_states.diagnostics += impact_notes(result, result.impacts, at_last)
-    if unresolved is not None:
-        result.row_states.diagnostics += unresolved.ends_the_motion(met)
-    return result
-
-
-def _loaded(one: Prepared, response: ResponseProblem) -> Prepared:
-    """With the forces of limits that a response has among its efforts."""
-    problem, mechanism = one.free.problem, one.free.problem.mechanism
-    loads = (*mechanism.loads, *response.efforts[len(one.response.efforts) :])
-    problem = replace(
-        problem,
-        mechanism=replace(mechanism, loads=loads),
-        load_laws=response.load_laws,
-        response=response,
-    )
-    return replace(one, response=response, free=with_loads(one.free, problem))
-
-
-def _onward(
-    one: Prepared, begun: Beginning, time: float, times: Floats, packing: Packing
-) -> MotionRows:
-    """The motion from a moment on, its first row. Where no step resolves the way to the next row,
-    as one of a few roundings of the time, its first row is that one."""
-    first = float(times[0])
-
-    def moved(begin: float, moments: Floats) -> MotionRows:
-        (found,) = integrate(
-            [(one.free.plan, begun)],
-            begin,
-            moments,
-            stops=[watched_stop(each) for each in one.response.stops],
-            driven=one.driven,
-            tolerance=one.response.tolerance,
-            fixed_step=one.response.fixed_step,
-            straight=one.chosen.problem.assembly.straight,
-            packing=packing,
-        )
-        return found
-
-    if first - time > tolerances.SAME_MOMENT * abs(first):
-        found = moved(time, np.array([time, *times]))
-        fastest = float(np.max(np.abs(begun.first), initial=0.0))
-        is_near = (first - time) * fastest <= tolerances.IMPACT_PLACE
-        is_stuck = found.report.end is MotionEnd.STUCK and found.report.rows < 2
-        if not (is_near and is_stuck):
-            return found
-    return moved(first, times)
 
 
 def _nothing(one: Prepared) -> ResponseResult:

@@ -42,8 +42,9 @@ from mechkin_cli.bench.measurement import in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
 from mechkin_cli.response.integration import integrate
 from mechkin_cli.response.report import MotionRows
-from mechkin_cli.response.rows import Prepared, rows_of
+from mechkin_cli.response.rows import Prepared
 from mechkin_cli.response.runs import prepare, read
+from mechkin_cli.response.stretches import gathered
 from mechkin_cli.session.kernel_run import Ask, RowInputs
 from mechkin_cli.session.session import Packing, Session
 from mechkin_cli.show import Floats
@@ -191,7 +192,7 @@ class Case:
 
     def answer(self, found: MotionRows) -> tuple[Floats, float]:
         """The coordinate over the rows, and the largest energy error."""
-        result = rows_of(self.prepared, found)
+        result = gathered(self.prepared, Packing(0, 1), found)
         read(result, [self.coordinate, "row.energy_error"])
         lost = np.asarray(result.quantity("row.energy_error").value)
         quantity = result.quantity(self.coordinate)

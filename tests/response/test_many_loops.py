@@ -13,7 +13,7 @@ from response.motions import has_same_bits
 from response.parallel_cranks import CompoundPendulum
 
 import mechkin_cli as mk
-from mechkin_cli.response import runs
+from mechkin_cli.response import stretches
 
 RATE = 0.8
 ROWS = "time: {from: 0, to: 0.3, step: 0.05}"
@@ -64,14 +64,14 @@ HOW = ["mirrored", "shuffled", "backwards", "by the last", "by the middle"]
 def effort(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Evaluations of the equations of motion in each run."""
     counts: list[int] = []
-    real = runs.integrate
+    real = stretches.integrate
 
     def counting(*given: Any, **named: Any) -> Any:
         motions = real(*given, **named)
         counts.extend(motion.report.evaluations for motion in motions)
         return motions
 
-    monkeypatch.setattr(runs, "integrate", counting)
+    monkeypatch.setattr(stretches, "integrate", counting)
     return counts
 
 

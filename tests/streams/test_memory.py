@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from streams.motions import BENT, REDUNDANT
+from streams.rebounding import BALL, SPRUNG, timed
 
 FOUR_BAR = """format: 1
 plane: xy
@@ -132,6 +133,15 @@ def test_responses_of_loops_and_couplings_hold_no_rows(tmp_path: Path, text: str
     )
     # the moments alone, in two units of two doubles each, would take 19 MB
     assert many < few + 10_000_000
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@pytest.mark.parametrize("text", [BALL, SPRUNG], ids=["impacts", "rests"])
+def test_responses_with_impacts_hold_no_rows(tmp_path: Path, text: str) -> None:
+    text = text.split("tables:")[0] + "tables: [{name: t, run: r, columns: [S.s], summary: [max]}]"
+    few, many = (peaks_of(tmp_path, timed(text, 6.0, count))[1] for count in (100_000, 600_000))
+    # the moments alone, in two units, would take 8 MB, and states with their chart 48 MB
+    assert many < few + 12_000_000
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")

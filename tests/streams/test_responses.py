@@ -18,7 +18,7 @@ import mechkin_cli as mk
 from mechkin_cli import tolerances
 from mechkin_cli.__main__ import main
 from mechkin_cli.analysis import ended
-from mechkin_cli.response import blocks
+from mechkin_cli.response.march import March
 from mechkin_cli.sweep import RunVerdicts
 from mechkin_cli.tables import TableColumn, Words, rows_table
 
@@ -191,14 +191,14 @@ def test_a_motion_is_gone_through_once(
     worst = RunVerdicts.of(whole.result)
     worst.measure("energy error", np.asarray(whole.result.energy_error))
     begun = []
-    march = blocks._March.__init__
+    march = March.__init__
 
-    def counted(self: blocks._March, *args: object) -> None:
+    def counted(self: March, *args: object) -> None:
         begun.append(1)
         march(self, *args)  # type: ignore[arg-type]
 
     small_blocks(monkeypatch, rows)
-    monkeypatch.setattr(blocks._March, "__init__", counted)
+    monkeypatch.setattr(March, "__init__", counted)
     stream = model.stream(asked, run=run, tables=[], rows=5)
     values = np.concatenate([block[asked[0]] for block in stream])
     assert values.tobytes() == whole[asked[0]].tobytes()
@@ -262,18 +262,6 @@ def test_a_program_may_end_before_its_stream() -> None:
         assert (ended.returncode, ended.stdout, ended.stderr) == (0, "2\n", "")
 
 
-def test_a_response_with_impacts_is_held(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Behind an impact the motion is another one: its rows come in one piece, and are the same."""
-    text = TEXTS["to the end"] + "limits: {O.theta: {min: -0.5, max: 1.5, restitution: 0.5}}\n"
-    model = mk.loads(text)
-    whole = model.respond("swing")
-    small_blocks(monkeypatch, 2)
-    stream = model.stream(run="swing", rows=7)
-    assert not stream.in_blocks
-    values = np.concatenate([block["O.theta"] for block in stream])
-    assert values.tobytes() == whole["O.theta"].tobytes()
-
-
 def test_too_many_rows_are_not_held(monkeypatch: pytest.MonkeyPatch) -> None:
     model = mk.loads(TEXTS["to the end"])
     monkeypatch.setattr(tolerances, "MOST_NUMBERS", 100)
@@ -281,14 +269,6 @@ def test_too_many_rows_are_not_held(monkeypatch: pytest.MonkeyPatch) -> None:
         model.respond("swing")
     small_blocks(monkeypatch, 10)
     assert sum(block.rows for block in model.stream(run="swing")) == 61
-
-
-def test_who_is_held_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
-    text = TEXTS["to the end"] + "limits: {O.theta: {min: -0.5, max: 1.5, restitution: 0.5}}\n"
-    monkeypatch.setattr(tolerances, "MOST_NUMBERS", 100)
-    model = mk.loads(text.split("tables:")[0] + "limits:" + text.split("limits:")[1])
-    with pytest.raises(mk.UsageError, match=r"held whole, as its motion .*: take a larger step"):
-        next(iter(model.stream(["O.theta"], run="swing")))
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:

@@ -1,6 +1,7 @@
 // Python's view of responses; needs the class Plan bound before.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -56,7 +57,7 @@ nb::dict report_of(const ResponseReport& report) {
 }
 
 using Stops = std::vector<std::tuple<int, int, int, double, int, int>>;
-constexpr int MOST_POWER = 64;
+constexpr int MOST_POWER = 64, MOST_PARTS = 1024;
 
 // The plans of some objects, which must outlive them.
 std::vector<const FrozenPlan*> plans_of(const std::vector<nb::object>& objects) {
@@ -127,7 +128,7 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
               double begin, const Row& times, const SpacedTimes* spaced, const Stops& stops, const DrivenLaws* driven, double tolerance,
               double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests,
               int iterations, double jump, double radius, bool straight, int lanes, int threads, long block,
-              const nb::object& taker) {
+              const nb::object& taker, const std::tuple<long, long>& some, int parts, const std::optional<double>& last) {
   const std::vector<const FrozenPlan*> plans = plans_of(held);
   if (!motion_unit(lanes)) throw nb::value_error("lanes: this width is not available on this machine");
   if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
@@ -135,7 +136,12 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
   const Plan& p = plans[0]->view();
   need(taker.is_none() || (plans.size() == 1 && block > 0), "taker: of one motion, in blocks of rows");
   need(!spaced || !taker.is_none(), "spaced: with a taker");
-  const std::size_t count = plans.size(), every = spaced ? (std::size_t)spaced->count : times.shape(0);
+  const auto [skipped, among] = some;
+  const long most = spaced ? spaced->count : (long)times.shape(0);
+  const long left = among < 0 ? most : among;
+  need(skipped >= 0 && skipped <= most && left <= most - skipped, "some: of the times");
+  need(parts > 0 && parts <= MOST_PARTS && (!last || std::isfinite(*last)), "parts: 1 to 1024; last: a finite number");
+  const std::size_t count = plans.size(), every = (std::size_t)left * parts + last.has_value();
   const std::size_t rows = taker.is_none() ? every : std::min(every, (std::size_t)block);
   int slots = 0;
   for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2))) slots += t.width;
@@ -147,8 +153,9 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
   if ((driven ? driven->inputs() : 0) != p.inputs) throw nb::value_error("driven: one law for each input");
   // a copy: another thread may change the array; who takes blocks keeps it as it is, as there may be many moments
   std::vector<double> moments;
-  if (taker.is_none()) moments.assign(times.data(), times.data() + every);
+  if (taker.is_none()) moments.assign(times.data(), times.data() + most);
   task.moments = (long)every, task.spaced = spaced;
+  task.part = {skipped, parts, begin, last.has_value(), last.value_or(0.0)};
   task.times = taker.is_none() ? moments.data() : times.data(), task.driven = driven, task.stops = stops_of(stops);
   task.limits = limits_of(tests, iterations, jump, radius, straight);
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
@@ -227,11 +234,28 @@ void bind_response(nb::module_& m) {
         std::vector<std::tuple<double, double, double>> all;
         for (int i = 0; i < laws.inputs(); ++i) all.emplace_back(value[i], rate[i], second[i]);
         return all;
-      }, "time"_a);
+      }, "time"_a)
+      .def("over", [](const DrivenLaws& laws, const Row& times) {
+        // values, rates and accelerations (3, inputs, moments) at some moments (s)
+        const long inputs = laws.inputs(), count = (long)times.shape(0);
+        double* to = nullptr;
+        auto found = new_array<double>(&to, {3, (std::size_t)inputs, (std::size_t)count});
+        std::vector<double> orders(3 * (std::size_t)inputs);
+        FloatingPointState floating;
+        DrivenLaws::Memory memory = laws.memory();
+        for (long k = 0; k < count; ++k) {
+          const double time = times.data()[k];
+          int cell = 0;
+          for (double edge : laws.edges()) cell += time >= edge;
+          laws.at(cell, time, 0, 1, orders.data(), orders.data() + inputs, orders.data() + 2 * inputs, &memory);
+          for (long n = 0; n < 3 * inputs; ++n) to[n * count + k] = orders[(std::size_t)n];
+        }
+        return found;
+      }, "times"_a);
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
   // turns, friction told to rows, work put in and lost; flags (variants, rows). One row more is for the place of a stop. Rows that were not
   // reached hold nan.
   m.def("respond", &run_response, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "spaced"_a.none() = nb::none(), "stops"_a, "driven"_a.none(),
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a, "straight"_a,
-        "lanes"_a, "threads"_a, "block"_a = 0, "taker"_a.none() = nb::none());
+        "lanes"_a, "threads"_a, "block"_a = 0, "taker"_a.none() = nb::none(), "some"_a = std::make_tuple(0L, -1L), "parts"_a = 1, "last"_a.none() = nb::none());
 }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -161,6 +162,22 @@ struct SpacedTimes {
       time = row == count - 1 ? last : first + k * step;
     return divisor != 1.0 ? time / divisor : multiplier != 1.0 ? time * multiplier : time;
   }
+  // Whether their steps are far above the rounding of any, four at most, so that they rise.
+  bool surely_rise() const {
+    if (count < 2) return true;
+    const double largest = std::max(std::fabs(at(0)), std::fabs(at(count - 1)));
+    return at(1) - at(0) > 16.0 * 0x1p-52 * largest && at(count - 1) > at(count - 2);
+  }
+};
+
+// Some of rising times: those behind the `skipped` first ones, each after so many equal `parts` of the way from the one
+// before, the first one from `begin` on; then one more, the `last`, if there is one.
+struct PartOfTimes {
+  long skipped = 0;
+  int parts = 1;
+  double begin = 0.0;
+  bool has_last = false;
+  double last = 0.0;
 };
 
 // Times of the rows, rising; `stride` numbers from lane to lane, 0 where all have the same. All have those of `spaced`, if
@@ -170,8 +187,14 @@ struct RowTimes {
   long count;
   long stride;
   const SpacedTimes* spaced = nullptr;
+  PartOfTimes part = {};
 
-  double at(int lane, long row) const { return spaced ? spaced->at(row) : time[lane * stride + row]; }
+  double given(int lane, long row) const {
+    row += part.skipped;
+    return spaced ? spaced->at(row) : time[lane * stride + row];
+  }
+  double at(int lane, long row) const { return part.parts == 1 && !part.has_last ? given(lane, row) : between(lane, row); }
+  double between(int lane, long row) const;
 };
 
 enum class LaneEnd : unsigned char {

@@ -23,7 +23,10 @@ Refusal check(const Motion& motion, const IntegratorSettings& s, const double* t
   for (int i = 0; i < motion.lanes(); ++i) {
     double before = time[i];
     REQUIRE(std::isfinite(before), "times are finite");
-    for (long r = 0; r < rows.count; ++r) {
+    // of very many only those are looked at that may not rise
+    const bool rises = rows.spaced && rows.part.parts == 1 && rows.spaced->surely_rise();
+    const long known = rises ? rows.count - rows.part.has_last - 1 : 0;
+    for (long r = 0; r < rows.count; r = std::max(r + 1, known)) {
       const double t = rows.at(i, r);
       REQUIRE(std::isfinite(t) && (r ? t > before : t >= before), "the times of rows rise from the start on");
       before = t;

@@ -12,6 +12,16 @@ constexpr double SAME_TIME = 2e-15;  // in parts of the time or the duration: be
 
 }  // namespace
 
+// Apart from `at`, which is asked several times a row.
+double RowTimes::between(int lane, long row) const {
+  if (part.has_last && row == count - 1) return part.last;
+  const long whole = row / part.parts, inner = row % part.parts + 1;
+  const double to = given(lane, whole);
+  if (inner == part.parts) return to;
+  const double from = whole ? given(lane, whole - 1) : part.begin;
+  return from + (to - from) * ((double)inner / part.parts);
+}
+
 // Where a step of about this length ends.
 double March::cut_for_rows(int lane, double step) {
   const LaneControl& c = control_[lane];

@@ -110,7 +110,8 @@ class ChartedMotion : public Motion {
   bool move(int lane, int which, double time, double* y) override;
   bool finds_more(int lane) override;
   bool gives_up(int lane) const override;
-  bool is_left(int lane) const override { return left_[lane]; }
+  // A lane that repeats the first one, without rows of its own, is left with it.
+  bool is_left(int lane) const override { return left_[rows_[lane].rows ? lane : 0]; }
 
   // Joints (numbers of frictions) that a lane ends by: without an answer, met again and again, or just starting to slip.
   std::vector<int> undecided_joints(int lane, const LaneReport& report) const;

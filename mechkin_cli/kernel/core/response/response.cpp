@@ -31,7 +31,7 @@ Refusal respond_pack(const ResponseTask& task, const MotionUnit& unit, long firs
   IntegratorSettings settings = task.settings;
   MotionLimits limits = task.limits;
   const long moments = task.moments < 0 ? rows[0].rows : task.moments;
-  const RowTimes times = {task.times, moments, 0, task.spaced};
+  const RowTimes times = {task.times, moments, 0, task.spaced, task.part};
   limits.longest = __builtin_inf();
   if (reads_time(*starts[0].plan) && moments > 0) {
     settings.dense_rows = (int)std::min<long>(moments + 1, 1 << 30);

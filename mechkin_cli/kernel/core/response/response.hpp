@@ -8,6 +8,7 @@ struct ResponseTask {
   std::vector<MotionRows> rows;     // likewise
   const double* times;              // rows: all variants have the same
   const SpacedTimes* spaced = nullptr;  // these instead, where there is one
+  PartOfTimes part = {};            // which of them
   long moments = -1;                // how many; -1: as many as the first variant's rows
   std::vector<MotionStop> stops;
   const DrivenLaws* driven;         // null: nothing is driven
