@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from math import asin, cos, pi, sin, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 from streams.rebounding import BALL, PLATFORM, SPRUNG, TEXTS, timed
-from streams.test_responses import cells, small_blocks
+from streams.test_responses import cells, run, small_blocks
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
@@ -203,3 +204,15 @@ def test_what_rests_on_a_spring_keeps_its_energy() -> None:
     assert whole.impacts is not None
     assert len(whole.impacts.columns[0].numbers) > 5
     assert np.nanmax(whole["row.energy_error"]) < 1e-9
+
+
+def test_the_command_writes_what_it_does_of_a_whole_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "f.yaml"
+    path.write_text(timed(BALL, 3, 2 * tolerances.LONG_RUN))
+    for name, formats in (("streamed", "csv"), ("whole", "csv,md")):
+        run(monkeypatch, str(path), "--format", formats, "--out", str(tmp_path / name))
+    for file in ("t.csv", "r.rows.csv", "r.impacts.csv"):
+        streamed = (tmp_path / "streamed" / file).read_bytes()
+        assert streamed == (tmp_path / "whole" / file).read_bytes()
