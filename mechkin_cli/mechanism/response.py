@@ -177,7 +177,7 @@ class ResponseProblem:
         Raises:
             InvalidFile: a law is not defined at one of them.
         """
-        if self.driven_rows is not None:
+        if self.driven_rows is not None and first < end:
             return self.driven_rows(first, end)
         return tuple(item.part(slice(first, end)) for item in self.driven)
 

@@ -313,7 +313,9 @@ class RestingMotion:
     ) -> _Leaves | None:
         """Where a limit would pull first; None where none does up to the last row."""
         look = _Look(self._pushes(start, np.array([begin])), begin)
-        rows, parts = moments.rows - first, SAMPLES if moments.rows <= tolerances.LONG_RUN else 1
+        rows = moments.rows - first
+        # of longer runs as many in all as of the longest that have all
+        parts = min(SAMPLES, -(-SAMPLES * tolerances.LONG_RUN // moments.rows))
         times = RowTimes(moments, first, rows, parts)
         near = parts * tolerances.SAME_MOMENT * abs(times.row(0))
         if times.row(0) - begin <= near:
@@ -390,8 +392,8 @@ FAR = 1e3
 size or of a radian: rounding never meets it."""
 
 SAMPLES = 16
-"""Parts of a step from row to row, and of each bracket, at which forces are looked at; of the steps
-of a long run, whose rows are samples themselves, there are none."""
+"""Parts of a step from row to row, and of each bracket, at which forces are looked at; fewer of the
+steps of a long run, at a million places in all and at each row."""
 
 WINDOW = 1024
 """Moments at which forces are looked at before more are asked for: a rest is short where a limit

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from streams.rebounding import PLATFORM
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
 from mechkin_cli.building import motion
 from mechkin_cli.building.spacing import sampled
 from mechkin_cli.mechanism import SpacedMoments
+from mechkin_cli.tables.csv import csv_bytes
 
 ROWS = 9001
 FILE = """format: 1
@@ -85,10 +87,31 @@ def test_stopped(monkeypatch) -> None:
     more = "stop: [{value: O.theta, at: -0.15}]"
     text = FILE.format(law=LAWS["jumps at rows"], other='{with: "0.5*P.s"}', time=EVEN, more=more)
     expected = analyzed(text, monkeypatch, 10 * ROWS).respond("swing").tables[0]
-    monkeypatch.setattr(tolerances, "PART_ROWS", 100)
-    blocks = analyzed(text, monkeypatch, 100).stream(run="swing", rows=100)
-    assert_same([block.tables[0] for block in blocks], expected)
-    assert 10 < len(expected.columns[0].values) < ROWS
+    reached = len(expected.columns[0].values)
+    assert 100 < reached < ROWS
+    for rows in (100, reached - 1, reached):
+        monkeypatch.setattr(tolerances, "PART_ROWS", rows)
+        blocks = analyzed(text, monkeypatch, 100).stream(run="swing", rows=rows)
+        assert_same([block.tables[0] for block in blocks], expected)
+
+
+@pytest.mark.parametrize("rows", [64, 500, 4096])
+def test_impacts_on_what_is_driven(rows: int, monkeypatch) -> None:
+    """A mass rests on a shaken platform and leaves it, again and again; some blocks have nothing
+    but the moment of an impact behind their rows."""
+    text = PLATFORM.replace("TIME", f"{{from: 0, to: 2, count: {ROWS}}}")
+    held = analyzed(text, monkeypatch, 10 * ROWS).respond("r")
+    made = analyzed(text, monkeypatch, 100)
+    monkeypatch.setattr(tolerances, "PART_ROWS", rows)
+    stream = made.stream(run="r", rows=rows)
+    found = [block.tables[0] for block in stream]
+    numbers = [k for k, c in enumerate(held.tables[0].columns) if isinstance(c.values, np.ndarray)]
+    assert len(numbers) > 6
+    for number in numbers:
+        values = np.concatenate([table.columns[number].values for table in found])
+        assert values.tobytes() == held.tables[0].columns[number].values.tobytes()
+    assert csv_bytes(stream.impacts) == csv_bytes(held.impacts)
+    assert held.impacts.columns[0].rows > 4
 
 
 def test_laws_that_are_not_defined_in_some_row(monkeypatch) -> None:
