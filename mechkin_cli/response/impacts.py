@@ -529,23 +529,18 @@ def impact_notes(
     notes = []
     for limit in dict.fromkeys(limit for impact in impacts for limit in impact.limits):
         own = [impact for impact in impacts if limit in impact.limits]
-        at = [units.text(impact.time, TIME) for impact in own]
         pushes = [impact.impulses[impact.limits.index(limit)] for impact in own]
         known = [push for push in pushes if isfinite(push)]
         dimension = (MOMENT if is_angle(limit.coordinate) else FORCE) * TIME
-        times = "once" if len(own) == 1 else f"{len(own)} times, first"
-        text = f"{limit.name} comes to its limit {times} at {at[0]}"
+        text = _told(units, limit, own, stays=limit in at_last)
         rests = any(limit in impact.held for impact in own)
-        if limit in at_last:
-            text += f", and rests at it from {at[-1]} on"
-        elif rests:
-            text += ", rests at it, and leaves it again"
         name = units.label(dimension)
         numbers = tuple(
             Number(f"impulse at {limit.name}", float(units.from_si(push, dimension)), name)
             for push in known[:MOST_TOLD]
         )
-        measured = f"largest impulse {units.text(max(known), dimension)}" if known else None
+        largest = max(known, default=0.0)
+        measured = f"largest impulse {units.text(largest, dimension)}" if largest else None
         if len(known) < len(pushes):
             text += "; another limit ends the same freedom, and how they share it is not unique"
         notes.append(
@@ -559,6 +554,27 @@ def impact_notes(
             )
         )
     return notes
+
+
+def _told(units: UnitSystem, limit: Limit, own: Sequence[Impact], *, stays: bool) -> str:
+    """What a coordinate does at its limit, by the impacts in which this pushes: it need not come in
+    each, where it rests while another one strikes."""
+    came = [impact for impact in own if impact.comes(limit)]
+    since = came[-1].time if came else own[0].time
+    at_rest = [impact.time for impact in own if limit in impact.held]
+    rests = [time for time in at_rest if time >= since] or at_rest or [since]
+    begun = units.text(rests[0], TIME)
+    if not came:
+        if not at_rest:
+            return f"{limit.name} is at its limit when another one is struck, at {begun}"
+        return f"{limit.name} rests at its limit from {begun} on" + (
+            "" if stays else ", and leaves it later"
+        )
+    times = "once" if len(came) == 1 else f"{len(came)} times, first"
+    text = f"{limit.name} comes to its limit {times} at {units.text(came[0].time, TIME)}"
+    if stays:
+        return f"{text}, and rests at it from {begun} on"
+    return f"{text}, rests at it, and leaves it again" if at_rest else text
 
 
 MOST_TOLD = 16

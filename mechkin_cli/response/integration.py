@@ -80,6 +80,11 @@ class Impact(NamedTuple):
         """Whether a coordinate then rests."""
         return bool(self.held)
 
+    def comes(self, limit: Limit) -> bool:
+        """Whether the coordinate of a limit came to it, and was not at rest there."""
+        still = tolerances.KINK_ROUNDING * max(1.0, *(abs(rate) for rate in self.rates))
+        return self.rates[self.limits.index(limit)] > still
+
 
 class Rebound(NamedTuple):
     """An impact, how the motion begins behind it, and what it put in and lost in kg, length units
@@ -211,12 +216,16 @@ def driven_laws(
     if course is None:
         assert not units
         return _kernel.DrivenLaws(None, [], [], [], [], time_unit, held)
-    edges = course.edges[1:-1] * time_unit
+    # an input turns at the end of a cell, too, where nothing bends: no step has to end there
+    bends = (course.constants[1:] != course.constants[:-1]).any(axis=1)
+    bends |= (course.ways[1:] != course.ways[:-1]).any(axis=1)
+    own = np.concatenate([[True], bends])
+    edges = course.edges[1:-1][bends] * time_unit
     return _kernel.DrivenLaws(
         compiled(course.tape),
         edges.tolist(),
-        np.ravel(course.constants).tolist(),
-        np.ravel(course.ways).tolist(),
+        np.ravel(course.constants[own]).tolist(),
+        np.ravel(course.ways[own]).tolist(),
         units,
         time_unit,
         held,

@@ -119,12 +119,16 @@ def first_row(run: Run) -> MotionRows:
     return with_columns(run(1, lambda *_: False), slice(1))
 
 
-def beginning_of(begin: float, moments: Moments | SpacedMoments, number: int) -> Floats:
-    """Moments (s) of a motion that begins before a row or at it, of which the first row is wanted:
-    it has the length of the motion to the last row."""
-    near = moments.part(slice(number, number + 1)).values
-    last = moments.part(slice(moments.rows - 1, moments.rows)).values
-    return np.unique(np.concatenate([[begin], near, last]))
+def beginning_of(begin: float, moments: Moments | SpacedMoments) -> Floats:
+    """Moments (s) of a motion of which the first row is wanted: it has the length of the motion to
+    the last row."""
+    last = float(moments.part(slice(moments.rows - 1, moments.rows)).values[0])
+    # a row is handed on when the next one is reached
+    return np.unique([begin, begin + SOON * (last - begin), last])
+
+
+SOON = 1e-6
+"""Part of a motion behind which its first row is handed on."""
 
 
 def taken(first: int, rows: int, arrays: Sequence[NDArray[Any]]) -> MotionRows:

@@ -8,6 +8,7 @@ coordinate; it is told as effort there, and acts on rows as a load over time.
 
 from __future__ import annotations
 
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,8 +18,10 @@ from mechkin_cli.mechanism import (
     CrossingEnd,
     JointLoad,
     LoadLaw,
+    Moments,
     Varying,
     effort_quantity,
+    is_angle,
     joined_curve,
 )
 from mechkin_cli.plan import FrictionTold, demand_of
@@ -35,6 +38,7 @@ from mechkin_cli.response.march import (
 from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.session import Ask, Chart, KernelInputs
 from mechkin_cli.structure import holding
+from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -42,7 +46,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import DrivenLaws
-    from mechkin_cli.mechanism import Limit, Moments, ResponseProblem, SpacedMoments
+    from mechkin_cli.mechanism import Limit, ResponseProblem, SpacedMoments
     from mechkin_cli.response.integration import WatchedStop
     from mechkin_cli.response.march import Taker
     from mechkin_cli.session import Packing, Session
@@ -142,7 +146,8 @@ class RestingMotion:
         stops: the limits at which they rest, by the numbers of the response's stops.
         beside: other limits that end the same freedoms, whose coordinates rest with those, and the
             one of `stops` that each may stand for.
-        begun: how it begins, at their limits and along them.
+        begin: the moment at which it begins, s.
+        begun: how it begins there, at their limits and along them.
         friction: what the free motion tells of frictions there (numbers,).
         packing: how rows are packed.
     """
@@ -153,12 +158,14 @@ class RestingMotion:
         response: ResponseProblem,
         stops: Sequence[int],
         beside: Mapping[int, int],
+        begin: float,
         begun: Beginning,
         friction: Floats,
         packing: Packing,
     ) -> None:
         self.free, self.response, self.packing = free, response, packing
         self.stops, self.beside, self.as_free = list(stops), dict(beside), friction
+        self.begin, self._bends = begin, _bends(free, response)
         self.held = _held_at(free, response, begun, self.stops)
         self.others = [
             _held_at(free, response, begun, [one if k == own else k for k in self.stops])
@@ -172,41 +179,37 @@ class RestingMotion:
         self.begun = Beginning(begun.state, first, along(begun.tangents, self.columns))
 
     def onward(
-        self,
-        begin: float,
-        moments: Moments | SpacedMoments,
-        first: int,
-        start: MotionRows,
-        block: int,
+        self, moments: Moments | SpacedMoments, first: int, start: MotionRows, block: int
     ) -> Iterator[tuple[MotionRows, list[Contact]]]:
-        """The motion from a moment (s) on over the rows of a response from number `first` on, as
-        one of the free coordinates and in blocks; up to where a limit would have to pull, which
-        then is its stop. And the forces of the limits at the rows, and where it begins."""
-        at = self._leaves(begin, moments, first, start)
+        """The motion over the rows of a response from number `first` on, as one of the free
+        coordinates and in blocks; up to where a limit would have to pull, which then is its stop.
+        And the forces of the limits at the rows: at that of the stop as it comes there."""
+        begin, at = self.begin, self._leaves(moments, first, start)
         every = RowTimes(moments, first, moments.rows - first)
         times = every if at is None else _until(every, at.time, begin)
-        contacts = self._contacts(np.array([begin]), self._forces(start, np.array([begin])))
         if not times.size:
             assert at is not None
-            moved = self._moved(begin, np.array([begin]))
-            yield self._as_free(_left(moved, 0, at.time, at.stop)), contacts
+            moved = self._moved(np.array([begin]))
+            yield self._as_free(_left(moved, 0, at.time, at.stop)), []
             return
 
         def run(block: int, taker: Taker | None) -> MotionRows:
-            return self._moved(begin, times, block, taker)
+            return self._moved(times, block, taker)
 
         for moved in marched(run, times.size, block):
             report = moved.report
             rows = min(times.rows, report.rows) - report.first
             own = times.between(report.first, report.first + rows, begin)
-            contacts += self._contacts(own, self._forces(moved, own))
+            before = own.copy()
+            if at is not None and at.time > begin:
+                before[own == at.time] = np.nextafter(at.time, begin)
+            contacts = self._contacts(own, self._forces(moved, before))
             if report.end is MotionEnd.STOPPED and at is None:
                 last, place = np.array([report.time]), [report.rows - report.first]
                 contacts += self._contacts(last, self._forces(moved, last, place))
             if at is not None and report.is_over and report.rows == times.size:
                 moved = _left(moved, times.rows, at.time, at.stop)
             yield self._as_free(moved), contacts
-            contacts = []
 
     def _contacts(self, times: Floats, forces: Sequence[Floats]) -> list[Contact]:
         """The rests at all limits, by forces of the limits that push and of each that others may
@@ -231,18 +234,18 @@ class RestingMotion:
             for limit in limits
         ]
 
-    def start(self, begin: float, moments: Moments | SpacedMoments, first: int) -> MotionRows:
+    def start(self, moments: Moments | SpacedMoments) -> MotionRows:
         """The row in which the motion begins."""
-        times = beginning_of(begin, moments, first)
-        return first_row(lambda block, taker: self._moved(begin, times, block, taker))
+        times = beginning_of(self.begin, moments)
+        return first_row(lambda block, taker: self._moved(times, block, taker))
 
     def _moved(
-        self, begin: float, times: Floats | RowTimes, block: int = 0, taker: Taker | None = None
+        self, times: Floats | RowTimes, block: int = 0, taker: Taker | None = None
     ) -> MotionRows:
-        """The motion from a moment on."""
+        """The motion over some moments."""
         (moved,) = integrate(
             [(self.held.session.plan, self.begun)],
-            begin,
+            self.begin,
             times,
             stops=[self._watched(number) for number in range(len(self.response.stops))],
             driven=self.held.laws,
@@ -286,7 +289,7 @@ class RestingMotion:
             return found
         orders = np.zeros((3, len(session.graph.inputs), rows.size))
         if laws is not None:
-            orders = laws.over(np.ascontiguousarray(times[reached]))
+            orders = self._orders(laws, times[reached])
         inputs = KernelInputs.of(
             problem, orders[0], orders[1], orders[2], np.zeros(orders[0].shape)
         )
@@ -303,19 +306,27 @@ class RestingMotion:
             own[reached] = batch.outputs[readout.slots[quantity.name].start]
         return found
 
+    def _orders(self, laws: DrivenLaws, times: Floats) -> Floats:
+        """Values, rates and accelerations of the inputs at some moments (3, inputs, moments): where
+        a piece of a law ends the accelerations that the motion comes with, as its rows have."""
+        orders = laws.over(np.ascontiguousarray(times))
+        for k in np.flatnonzero(np.isin(times, self._bends) & (times > self.begin)):
+            before = laws.at(float(np.nextafter(times[k], self.begin)))
+            orders[2, :, k] = [second for _, _, second in before]
+        return orders
+
     def _pushes(self, moved: MotionRows, times: Floats) -> Floats:
         """How the limits push at the rows of a motion (limits, rows); nan beyond its end."""
         forces = self._efforts(self.held, moved, times, None)
         return np.array([-side * one for side, one in zip(self.sides, forces, strict=True)])
 
     def _leaves(
-        self, begin: float, moments: Moments | SpacedMoments, first: int, start: MotionRows
+        self, moments: Moments | SpacedMoments, first: int, start: MotionRows
     ) -> _Leaves | None:
         """Where a limit would pull first; None where none does up to the last row."""
+        begin = self.begin
         look = _Look(self._pushes(start, np.array([begin])), begin)
-        rows = moments.rows - first
-        # of longer runs as many in all as of the longest that have all
-        parts = min(SAMPLES, -(-SAMPLES * tolerances.LONG_RUN // moments.rows))
+        rows, parts = moments.rows - first, _parts(moments)
         times = RowTimes(moments, first, rows, parts)
         near = parts * tolerances.SAME_MOMENT * abs(times.row(0))
         if times.row(0) - begin <= near:
@@ -334,7 +345,7 @@ class RestingMotion:
             def take(first: int, rows: int, arrays: list[NDArray[Any]]) -> bool:
                 return look_at(taken(first, rows, arrays))
 
-            last = self._moved(begin, times, WINDOW, take)
+            last = self._moved(times, WINDOW, take)
             if look.found is None:
                 look_at(last)
         else:
@@ -350,7 +361,7 @@ class RestingMotion:
                 return _Leaves(high, self.stops[which])
             lead = np.array([begin] if inner[0] > begin else [])
             sampled = np.concatenate([lead, inner])
-            found = self._pushes(self._moved(begin, sampled), sampled)[:, lead.size :]
+            found = self._pushes(self._moved(sampled), sampled)[:, lead.size :]
             pulls = np.flatnonzero((found < 0.0).any(axis=0))
             k = int(pulls[0]) if pulls.size else inner.size - 1
             which = int(np.argmin(found[:, k])) if pulls.size else which
@@ -375,13 +386,23 @@ class RestingMotion:
         chart, width = moved.chart, moved.states.shape[1]
         none = np.zeros((len(self.columns), width))
         resting = np.zeros((len(self.columns), self.begun.tangents.shape[1], width))
-        for number, column in enumerate(self.columns):
-            resting[number, column] = 1.0
+        for number, (column, limit) in enumerate(zip(self.columns, self.held.limits, strict=True)):
+            # in parts of the mechanism's size, as the other coordinates of the chart
+            resting[number, column] = (
+                1.0 if is_angle(limit.coordinate) else 1.0 / self.free.plan.size
+            )
         direction = np.concatenate([chart.direction, resting.reshape(-1, width)])
         rates = np.concatenate([chart.rates, none])
         accelerations = np.concatenate([chart.accelerations, none])
         friction = self._friction(chart.friction)
         return replace(moved, chart=Chart(direction, rates, accelerations, friction))
+
+
+def _bends(free: Session, response: ResponseProblem) -> Floats:
+    """The moments (s) at which a piece of a driven coordinate's law ends."""
+    if response.course is None:
+        return np.empty(0)
+    return response.course.edges[1:] * float(free.problem.units.to_si(1.0, TIME))
 
 
 WRENCH = 6
@@ -391,13 +412,29 @@ FAR = 1e3
 """How far the stop of a limit is put away while its coordinate rests, in parts of the mechanism's
 size or of a radian: rounding never meets it."""
 
+
+def _parts(moments: Moments | SpacedMoments) -> int:
+    """Parts of each way from row to row at whose ends the forces of limits are looked at: whether a
+    limit pulls between two rows must not go by how far these are apart."""
+    ways = moments.rows - 1
+    longest = moments.duration / ways
+    if isinstance(moments, Moments):
+        longest = float(np.max(np.diff(moments.values)))
+    least = max(SAMPLES, ceil(LEAST_PLACES * longest / moments.duration))
+    return max(1, min(least, SAMPLES * tolerances.LONG_RUN // ways))
+
+
+LEAST_PLACES = 4096
+"""Places of a response, however few its rows are, at which the forces of limits are looked at; a
+force that changes its sign twice between two of them is not seen to."""
+
 SAMPLES = 16
 """Parts of a step from row to row, and of each bracket, at which forces are looked at; fewer of the
 steps of a long run, at a million places in all and at each row."""
 
-WINDOW = 1024
+WINDOW = 256
 """Moments at which forces are looked at before more are asked for: a rest is short where a limit
-soon pulls, and so many take 10 KB for each state."""
+soon pulls, and each may be a step."""
 
 
 def along(tangents: Floats, columns: Sequence[int]) -> Floats:

@@ -276,13 +276,14 @@ class Stretches:
             self._one.response,
             resting.held,
             resting.beside,
+            touch.time,
             begun,
             start.chart.friction[:, 0],
             self._packing,
         )
         moments = self._one.response.moments
-        start = rest.start(touch.time, moments, first)
-        onward = rest.onward(touch.time, moments, first, start, self._block)
+        start = rest.start(moments)
+        onward = rest.onward(moments, first, start, self._block)
         blocks = (Block(*each) for each in onward)
         return _Stretch(first, blocks, start.turns, work, touch.time, resting.held, left)
 
@@ -303,7 +304,7 @@ class Stretches:
     def _start(self, begun: Beginning, time: float, row: int) -> MotionRows:
         """Where a free motion begins, of which a row comes next."""
         begin = self._begins(time, row)
-        times = beginning_of(begin, self._one.response.moments, row)
+        times = beginning_of(begin, self._one.response.moments)
         return first_row(lambda block, taker: self._onward(begun, begin, times, block, taker))
 
     def _free_blocks(self, begun: Beginning, time: float, row: int) -> Iterator[Block]:
@@ -365,12 +366,10 @@ def _none_of(moved: MotionRows) -> MotionRows:
 
 
 class _Gathered:
-    """Rows of stretches as blocks of so many. A full one is kept until another row comes, where
-    there may be an impact: one at the moment of its last row tells the forces of that row."""
+    """Rows of stretches as blocks of so many."""
 
     def __init__(self, response: ResponseProblem, rows: int) -> None:
         self._moments, self._rows = response.moments, rows
-        self._keeps = any(limit.restitution is not None for limit in limits_of(response))
         self._pieces: list[MotionRows] = []
         self._contacts: list[Contact] = []
         self._first = self._count = 0
@@ -394,7 +393,7 @@ class _Gathered:
             self._pieces.append(with_columns(moved, slice(at, None)) if at else moved)
         elif count > at:
             self._pieces.append(with_columns(moved, slice(at, None)) if at else moved)
-            if self._count == self._rows and not self._keeps:
+            if self._count == self._rows:
                 yield self._full()
 
     def _full(self) -> Block:

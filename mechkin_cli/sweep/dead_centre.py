@@ -167,10 +167,10 @@ def _as_written(session: Session, rows: NDArray[np.intp]) -> tuple[Floats | None
 
 def judge_dead_centres(session: Session, rows: SweepRows, condition: Floats) -> None:
     """Finds the rows that stand at a dead centre as nearly as a double can say, among those whose
-    condition (rows,) leaves it open, and says so."""
+    condition (rows,) leaves it open, and says so. A free motion has its rates there."""
     judged = np.isin(rows.status, (Status.ok, *CONDITION_LIMITS))
     near = rows.reached & judged & ~rates_are_clear(condition)
-    if not near.any() or not session.driven:
+    if not near.any() or not session.driven or session.plan.charts:
         return
     for row in np.flatnonzero(near & _is_lost(session, rows, near)).tolist():
         before = [places for places in places_before(session, rows, row) if _grows(session, places)]

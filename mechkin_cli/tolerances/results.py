@@ -48,7 +48,7 @@ PART_ROWS: Final = 1 << 15
 which two parts are held while one is written, and what is done once for each part is small beside
 its rows."""
 
-FREED_MEGABYTES: Final = 64
+FREED_MEGABYTES: Final = 16
 """Freed memory that a process keeps for the next part: more than the arrays of one, so that no page
 is asked for again. Of peaks of 10^7 rows pages took a tenth of the time."""
 

@@ -69,7 +69,6 @@ EDITORS_ACCEPT = {
     "effort-and-drive": CROSSING,
     "rest-and-input": CROSSING,
     "block-too-large": CROSSING,
-    "too-many-numbers": CROSSING,
     "too-many-rows": CROSSING,
     "csv-table": "it is a property of another file",
     "too-large": VALUE,

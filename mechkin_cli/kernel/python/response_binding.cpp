@@ -57,7 +57,7 @@ nb::dict report_of(const ResponseReport& report) {
 }
 
 using Stops = std::vector<std::tuple<int, int, int, double, int, int>>;
-constexpr int MOST_POWER = 64, MOST_PARTS = 1024;
+constexpr int MOST_POWER = 64, MOST_PARTS = 1 << 20;
 
 // The plans of some objects, which must outlive them.
 std::vector<const FrozenPlan*> plans_of(const std::vector<nb::object>& objects) {
@@ -140,7 +140,7 @@ nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, c
   const long most = spaced ? spaced->count : (long)times.shape(0);
   const long left = among < 0 ? most : among;
   need(skipped >= 0 && skipped <= most && left <= most - skipped, "some: of the times");
-  need(parts > 0 && parts <= MOST_PARTS && (!last || std::isfinite(*last)), "parts: 1 to 1024; last: a finite number");
+  need(parts > 0 && parts <= MOST_PARTS && (!last || std::isfinite(*last)), "parts: 1 to 1048576; last: a finite number");
   const std::size_t count = plans.size(), every = (std::size_t)left * parts + last.has_value();
   const std::size_t rows = taker.is_none() ? every : std::min(every, (std::size_t)block);
   int slots = 0;
