@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from mechkin_cli.errors import Errors
     from mechkin_cli.mechanism import AnyBalance, Problem
     from mechkin_cli.modes import Modes
-    from mechkin_cli.plots import Picture
+    from mechkin_cli.plots import Drawing, Picture, PlotCurve
     from mechkin_cli.sweep import Result
     from mechkin_cli.tables import Extreme, Statistics
 
@@ -494,6 +494,17 @@ class Analysis(Listed):
         self, y: Sequence[str] = (), x: str | None = None, table: str | None = None
     ) -> Picture:
         """What `plot` draws, as plain data; arguments and errors are those of `plot`."""
+        return plots.picture(self.drawing(y, x, table))
+
+    def drawing(
+        self,
+        y: Sequence[str] = (),
+        x: str | None = None,
+        table: str | None = None,
+        places: PlotCurve | None = None,
+    ) -> Drawing:
+        """What a picture is made of; arguments and errors are those of `plot`. With `places` these
+        rows are a part of a run, which goes along them."""
         y = texts("y", y, '["O4.theta"]')
         if x is not None:
             a_text("x", x, '"O4.theta"')
@@ -501,7 +512,7 @@ class Analysis(Listed):
             a_text("table", table, '"table_03"')
         if y:
             title = self.model.name if self.run == SWEEP else self.run
-            return plots.picture(self, title, y, x)
+            return plots.drawing(self, title, y, x, places)
         known = {layout.name: number for number, layout in enumerate(self.layouts)}
         if not known:
             raise UsageError("there is no table to draw; name what to draw")
@@ -510,7 +521,7 @@ class Analysis(Listed):
             tables = ", ".join(known)
             raise UsageError(f"there is no table {name[:LONGEST_NAME]}; tables are {tables}")
         number = known[name]
-        return plots.table_picture(self, self.layouts[number], self.tables[number], x)
+        return plots.table_drawing(self, self.layouts[number], self.tables[number], x, places)
 
     @overload
     def view(self, path: None = None, *, modes: bool = True) -> view.Page: ...

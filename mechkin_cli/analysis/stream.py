@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli import balances
+from mechkin_cli import balances, plots
 from mechkin_cli.analysis.analysis import Analysis, by_label
 from mechkin_cli.arguments import a_text
 from mechkin_cli.assembly import rows_of_start
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import AnyBalance
+    from mechkin_cli.plots import Drawing, Picture
     from mechkin_cli.response import ResponseBlocks
     from mechkin_cli.sweep import Part, Result
     from mechkin_cli.tables import CoefficientsLayout, TableColumn, TableLayout
@@ -193,6 +194,21 @@ class Stream:
             {**time, **{item.name: item.written for item in motion.inputs}},
             lambda name: units.label(known[name].dimension),
         )
+
+    def picture(
+        self, y: Sequence[str] = (), x: str | None = None, table: str | None = None
+    ) -> Picture:
+        """Curves of the run as plain data, as `Analysis.picture`, of no more rows than a picture
+        shows: neighbouring ones stand for each other, but for the largest and the least."""
+        along = self.along
+
+        def drawings() -> Iterator[tuple[Drawing, slice]]:
+            for part, own in self.parts():
+                name, unit = ("row", "") if along is None else (along.name, along.unit)
+                places = plots.PlotCurve(name, unit, self.places(part))
+                yield part.analysis.drawing(y, x, table, places), own
+
+        return plots.thinned_picture(drawings(), self.run_rows)
 
     def places(self, part: PartRows) -> NDArray[np.float64]:
         """Where the rows of a part stand along the run; their numbers from 1, if nothing moves."""

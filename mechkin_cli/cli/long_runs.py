@@ -78,7 +78,7 @@ def streamed_runs(model: Model, command: AnalyzeCommand) -> list[str]:
         return [run for run in _wanted_runs(model, command) if not _rests(model, run)]
     if needing or not command.asked_formats:
         return []
-    return [run for run in _wanted_runs(model, command) if _is_long(model, run)]
+    return [run for run in _wanted_runs(model, command) if is_long(model, run)]
 
 
 def _wanted_runs(model: Model, command: AnalyzeCommand) -> list[str]:
@@ -94,7 +94,7 @@ def _rests(model: Model, run: str) -> bool:
     return run != SWEEP and model.design.response(run).search is not None
 
 
-def _is_long(model: Model, run: str) -> bool:
+def is_long(model: Model, run: str) -> bool:
     """Whether the rows of a run are many, and may be taken block by block."""
     if _rests(model, run):
         return False

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from mechkin_cli import expressions, plots, tables
 from mechkin_cli.analysis import run_name
 from mechkin_cli.cli.analyze import run_all
+from mechkin_cli.cli.long_runs import is_long
 from mechkin_cli.cli.messages import (
     ExitCode,
     model_of,
@@ -23,11 +24,11 @@ from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis import Analysis
+    from mechkin_cli.analysis import Analysis, Stream
     from mechkin_cli.model import Model
     from mechkin_cli.plots import Picture
 
-    Drawn = tuple[Analysis, str | None]
+    Drawn = tuple[Analysis | Stream, str | None]
     """A run, and the table of it that is drawn; None: what is named."""
 
 
@@ -104,9 +105,11 @@ def listed(text: str) -> list[str]:
     return [part.strip() for part in parts if part.strip()]
 
 
-def _run(model: Model, run: str | None, mode: str | None) -> Analysis:
-    """The run that is named, or the first."""
+def _run(model: Model, run: str | None, mode: str | None) -> Analysis | Stream:
+    """The run that is named, or the first; block by block, where its rows are many."""
     name = model.runs[0] if run is None else run
+    if name in model.runs and is_long(model, name):
+        return model.stream(run=name, mode=mode)
     return model.analyze(mode=mode) if name == SWEEP else model.run_free(name, mode=mode)
 
 
@@ -120,9 +123,12 @@ def _tables(
     """
     if run is not None:
         run_name(model.runs, run)
+    long = [one for one in model.runs if is_long(model, one)]
+    runs: list[Analysis | Stream] = [_streamed(model, names, one, mode) for one in long]
+    runs += run_all(model, names, mode, done=long)
     drawn: dict[str, Drawn] = {
         layout.name: (analysis, layout.name)
-        for analysis in run_all(model, names, mode)
+        for analysis in runs
         for layout in analysis.layouts
         if run in (None, analysis.run)
     }
@@ -131,6 +137,14 @@ def _tables(
         which = "no table of that name" if names else "no table"
         raise UsageError(f"{whose} {which}; name what is drawn, for example --y A.theta")
     return drawn
+
+
+def _streamed(model: Model, names: list[str] | None, run: str, mode: str | None) -> Stream:
+    """A run of many rows, with its tables of some names; None: all."""
+    own = None
+    if names is not None:
+        own = [one.name for one in tables.chosen(tuple(model.tables), names) if one.run == run]
+    return model.stream(run=run, tables=own, mode=mode)
 
 
 def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -> None:

@@ -22,13 +22,14 @@ from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import Columns, TableColumn, TableLayout, Words, row_texts, run_parameter
 from mechkin_cli.units import FORCE, LENGTH, MOMENT
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import Status, has_solution
 from mechkin_cli.view import run_marks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Figure
     from matplotlib.typing import ColorType
+    from numpy.typing import NDArray
 
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep import Readable
@@ -122,63 +123,102 @@ class Picture(NamedTuple):
         return f"Picture of {curves} over {', '.join(dict.fromkeys(c.words for c in self.x))}"
 
 
-def picture(
-    analysis: Readable, title: str, y: Sequence[str | PlotCurve], x: str | PlotCurve | None = None
-) -> Picture:
-    """The picture of some columns, quantities or expressions, in the file's units.
+class Drawing(NamedTuple):
+    """What a picture is made of, of some rows of a run.
+
+    Attributes:
+        title: above it.
+        curves: what is drawn.
+        against: against what; None: the run's parameter.
+        parameter: what the run goes along.
+        marks: as those of a picture.
+        status: verdicts, codes of `Status` (rows,).
+        plane_units: of what may stand in a plane.
+    """
+
+    title: str
+    curves: tuple[PlotCurve, ...]
+    against: PlotCurve | None
+    parameter: PlotCurve
+    marks: tuple[tuple[float, str], ...]
+    status: NDArray[np.int8]
+    plane_units: frozenset[str]
+
+
+def drawing(
+    analysis: Readable,
+    title: str,
+    y: Sequence[str | PlotCurve],
+    x: str | PlotCurve | None = None,
+    places: PlotCurve | None = None,
+) -> Drawing:
+    """What the picture of some columns, quantities or expressions is made of; in the file's units.
 
     Args:
-        analysis: of the run.
+        analysis: of the run, or of a part of it.
         title: above the picture.
         y: what is drawn; vectors alone, or numbers alone.
         x: against what; None: the run's parameter.
+        places: what the run goes along at the rows of a part; None: they are all.
 
     Raises:
-        UsageError: nothing to draw, words, or what cannot stand in one picture.
+        UsageError: nothing to draw, or words.
         ExpressionError: an unknown name, or dimensions that do not fit.
     """
-    drawn = [one if isinstance(one, PlotCurve) else curve_of(analysis, one) for one in y]
+    drawn = tuple(one if isinstance(one, PlotCurve) else curve_of(analysis, one) for one in y)
     if not drawn:
         raise UsageError(f"{title} has nothing to draw; name what to draw, with --y A.effort")
-    along = parameter_curve(analysis)
-    against = curve_of(analysis, x) if isinstance(x, str) else x
+    along = parameter_curve(analysis) if places is None else places
+    marks = run_marks(analysis, along.label, along.values, whole=places is None)
+    label = analysis.result.units.label
+    return Drawing(
+        title,
+        drawn,
+        curve_of(analysis, x) if isinstance(x, str) else x,
+        along,
+        tuple((float(str(mark["x"])), str(mark["text"])) for mark in marks),
+        analysis.result.status,
+        frozenset(label(dimension) for dimension in (LENGTH, FORCE, MOMENT)),
+    )
+
+
+def picture(one: Drawing) -> Picture:
+    """The picture of a drawing.
+
+    Raises:
+        UsageError: what cannot stand in one picture.
+    """
+    drawn, along = one.curves, one.parameter
     if any(curve.is_vector for curve in drawn):
-        xs, ys = _in_plane(drawn, against)
-        return _picture(analysis, title, xs, (ys,), along, is_plane=True)
-    against = against or along
+        xs, ys = _in_plane(drawn, one.against)
+        return _picture(one, xs, (ys,), is_plane=True)
+    against = one.against or along
     if against.is_vector:
         raise UsageError(f"{against.label} is a vector; draw over a number, such as its .x")
     units = dict.fromkeys(curve.unit for curve in drawn)
     panels = tuple(tuple(c for c in drawn if c.unit == u) for u in units)
-    label = analysis.result.units.label
     is_plane = against.label != along.label and set(units) == {against.unit}
-    is_plane &= against.unit in {label(LENGTH), label(FORCE), label(MOMENT)}
+    is_plane &= against.unit in one.plane_units
     xs = len(drawn) * (against,) if is_plane else (against,)
-    return _picture(analysis, title, xs, panels, along, is_plane=is_plane)
+    return _picture(one, xs, panels, is_plane=is_plane)
 
 
 def _picture(
-    analysis: Readable,
-    title: str,
+    one: Drawing,
     x: tuple[PlotCurve, ...],
     panels: tuple[tuple[PlotCurve, ...], ...],
-    along: PlotCurve,
     *,
     is_plane: bool,
 ) -> Picture:
-    result = analysis.result
-    marks = tuple(
-        (float(str(mark["x"])), str(mark["text"]))
-        for mark in run_marks(analysis, along.label, along.values)
-    )
     doubtful = tuple(
-        (status.label, result.status == status)
+        (status.label, one.status == status)
         for status in Status
         if status not in (Status.ok, Status.dead_centre)  # the latter is a mark
         and status.has_solution
-        and bool((result.status == status).any())
+        and bool((one.status == status).any())
     )
-    return Picture(title, x, panels, is_plane, along, marks, result.solved, doubtful)
+    solved = has_solution(one.status)
+    return Picture(one.title, x, panels, is_plane, one.parameter, one.marks, solved, doubtful)
 
 
 def _in_plane(
@@ -215,13 +255,19 @@ def _spread(values: Floats) -> float:
     return float(np.ptp(known)) if known.size else -1.0
 
 
-def table_picture(
-    analysis: Readable, layout: TableLayout, table: Columns, x: str | None = None
-) -> Picture:
-    """The picture of a table: as its `plot:` says, else all its numbers over the run's parameter.
+def table_drawing(
+    analysis: Readable,
+    layout: TableLayout,
+    table: Columns,
+    x: str | None = None,
+    places: PlotCurve | None = None,
+) -> Drawing:
+    """What the picture of a table is made of: as its `plot:` says, else all its numbers over the
+    run's parameter.
 
     Args:
         x: a label or an expression that takes the place of the one in `plot:`.
+        places: as of `drawing`.
 
     Raises:
         UsageError: it has no numbers, or names a column of words.
@@ -240,7 +286,7 @@ def table_picture(
             for column in table.columns
             if column.label not in left_out and not isinstance(column.values, Words)
         ]
-    return picture(analysis, table.title or table.name, drawn, x)
+    return drawing(analysis, table.title or table.name, drawn, x, places)
 
 
 _NO_DATES: dict[str, dict[str, None]] = {

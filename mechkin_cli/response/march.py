@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response.report import MotionRows, motion_of, under_way
 from mechkin_cli.session import Chart
@@ -123,12 +124,7 @@ def beginning_of(begin: float, moments: Moments | SpacedMoments) -> Floats:
     """Moments (s) of a motion of which the first row is wanted: it has the length of the motion to
     the last row."""
     last = float(moments.part(slice(moments.rows - 1, moments.rows)).values[0])
-    # a row is handed on when the next one is reached
-    return np.unique([begin, begin + SOON * (last - begin), last])
-
-
-SOON = 1e-6
-"""Part of a motion behind which its first row is handed on."""
+    return np.unique([begin, begin + tolerances.FIRST_PART * (last - begin), last])
 
 
 def taken(first: int, rows: int, arrays: Sequence[NDArray[Any]]) -> MotionRows:

@@ -191,6 +191,10 @@ MOST_RESPONSE_STEPS: Final = 1_000_000
 """Attempted steps of one response: minutes of work for one mechanism, and far more than any of the
 kept ones needs (8 to 600)."""
 
+FIRST_PART: Final = 1e-6
+"""Part of a motion behind which its first row is handed on, where that alone is wanted: a row is
+when the next one is reached."""
+
 MOST_IMPACTS: Final = 10_000
 """Impacts of one response: a ball that keeps 0.99 of its speed rests after 1100."""
 

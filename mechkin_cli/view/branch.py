@@ -39,14 +39,14 @@ KINDS = {
 """Kind of mark by the code of the message with the place."""
 
 
-def run_marks(analysis: Readable, label: str, x: Floats) -> list[Plain]:
+def run_marks(analysis: Readable, label: str, x: Floats, *, whole: bool = True) -> list[Plain]:
     """The marks of a branch, in the order of its messages, over its axis `label` with values `x`
-    (rows,)."""
+    (rows,); not the `whole` of a run has those places alone that lie among its rows."""
     found: list[Plain] = []
     for diagnostic in analysis.diagnostics:
         kind = KINDS.get(diagnostic.code)
         if kind is not None:
-            for text, place in _places(analysis, diagnostic, label, x):
+            for text, place in _places(analysis, diagnostic, label, x, whole=whole):
                 found.append({"x": place, "kind": kind, "text": text})
     for row in np.flatnonzero(analysis.result.status == Status.dead_centre).tolist():
         found.append({"x": float(x[row]), "kind": "dead-centre", "text": "row at a dead centre"})
@@ -57,7 +57,7 @@ def run_marks(analysis: Readable, label: str, x: Floats) -> list[Plain]:
 
 
 def _places(
-    analysis: Readable, diagnostic: Diagnostic, label: str, x: Floats
+    analysis: Readable, diagnostic: Diagnostic, label: str, x: Floats, *, whole: bool
 ) -> Iterator[tuple[str, float]]:
     """What a message measured, place by place, with where on the axis that is."""
     for numbers in _by_place(diagnostic.numbers):
@@ -66,7 +66,7 @@ def _places(
         if label in places:
             yield words, places[label]
         else:
-            for place in _crossed(analysis, places, x):
+            for place in _crossed(analysis, places, x, whole=whole):
                 yield words, place
 
 
@@ -81,9 +81,11 @@ def _by_place(numbers: tuple[Number, ...]) -> Iterator[tuple[Number, ...]]:
         yield numbers[first:]
 
 
-def _crossed(analysis: Readable, places: dict[str, float], x: Floats) -> Iterator[float]:
+def _crossed(
+    analysis: Readable, places: dict[str, float], x: Floats, *, whole: bool
+) -> Iterator[float]:
     """Where the first of some coordinates passes its place between two rows, read straight between
-    them; at the last row with a solution where it never does."""
+    them; at the last row with a solution where it never does in the `whole` run."""
     name, value = next(iter(places.items()))
     solved = np.flatnonzero(analysis.result.solved)
     if not solved.size:
@@ -98,7 +100,7 @@ def _crossed(analysis: Readable, places: dict[str, float], x: Floats) -> Iterato
     for k in at:
         share = 0.0 if off[k] == off[k + 1] else off[k] / (off[k] - off[k + 1])
         yield float(x[solved[k]] + share * (x[solved[k + 1]] - x[solved[k]]))
-    if not at.size:
+    if whole and not at.size:
         yield float(x[solved[-1]])
 
 

@@ -12,7 +12,7 @@ import yaml
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.plots.curves import PlotCurve, curve_of, drawn, image, picture
+from mechkin_cli.plots.curves import PlotCurve, curve_of, drawing, drawn, image, picture
 
 FOUR_BAR = """\
 format: 1
@@ -87,7 +87,7 @@ def test_named_expressions_are_drawn_by_their_names():
 
 def test_a_vector_of_a_plane_has_two_components(analysis):
     places = analysis["tip.position"][:, :2]
-    found = picture(analysis, "tip", [PlotCurve("tip.position", "mm", places)])
+    found = picture(drawing(analysis, "tip", [PlotCurve("tip.position", "mm", places)]))
     np.testing.assert_array_equal(found.x[0].values, places[:, 0])
     np.testing.assert_array_equal(found.panels[0][0].values, places[:, 1])
 

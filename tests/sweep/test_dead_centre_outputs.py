@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import mechkin_cli as mk
 from mechkin_cli.cli.app import app
-from mechkin_cli.plots.curves import table_picture
+from mechkin_cli.plots import picture, table_drawing
 from mechkin_cli.view.branch import run_marks
 
 
@@ -83,7 +83,7 @@ def test_pictures_and_pages_mark_the_row(file: Path) -> None:
     x = r["D.theta"]
     (mark,) = [mark for mark in run_marks(r, "D.theta", x) if mark["kind"] == "dead-centre"]
     assert mark["x"] == -30.0
-    drawn = table_picture(r, r.layouts[0], r.tables[0])
+    drawn = picture(table_drawing(r, r.layouts[0], r.tables[0]))
     assert [place for place, _ in drawn.marks] == [-30.0]
     # no entry for a sign that stands nowhere
     assert not drawn.doubtful

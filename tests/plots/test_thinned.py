@@ -1,0 +1,95 @@
+"""Pictures of long runs: of fewer rows, with the same extremes, ends, gaps, marks and verdicts."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sweep.cut import cut
+
+import mechkin_cli as mk
+from mechkin_cli.plots import thinned
+
+MECHANISMS = Path(__file__).parents[2] / "mechanisms"
+RCSR = MECHANISMS / "dissertation" / "rcsr.yaml"
+FOUR_BAR = MECHANISMS / "plane" / "planar_four_bar.yaml"
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stretches of a few rows, in parts of a few dozen."""
+    cut(monkeypatch, 24)
+    monkeypatch.setattr(thinned, "STRETCHES", 40)
+
+
+def assert_thinned(whole, found) -> None:
+    """As much as is seen: curves reach as far, begin and end alike, and their rows are rows."""
+    assert found.title == whole.title
+    assert set(found.marks) == set(whole.marks)
+    assert found.is_plane == whole.is_plane
+    assert [words for words, _ in found.doubtful] == [words for words, _ in whole.doubtful]
+    assert found.parameter.words == whole.parameter.words
+    rows = np.searchsorted(whole.parameter.values, found.parameter.values)
+    assert (whole.parameter.values[rows] == found.parameter.values).all()
+    assert rows.size < whole.parameter.values.size
+    assert (whole.solved[rows] == found.solved).all()
+    assert np.count_nonzero(np.diff(found.solved)) == np.count_nonzero(np.diff(whole.solved))
+    for before, behind in zip(
+        (*whole.x, *(c for panel in whole.panels for c in panel)),
+        (*found.x, *(c for panel in found.panels for c in panel)),
+        strict=True,
+    ):
+        assert before.words == behind.words
+        assert np.array_equal(before.values[rows], behind.values, equal_nan=True)
+        assert np.nanmax(before.values) == np.nanmax(behind.values)
+        assert np.nanmin(before.values) == np.nanmin(behind.values)
+        assert np.array_equal(before.values[[0, -1]], behind.values[[0, -1]], equal_nan=True)
+
+
+def long_text(path: Path, before: str, behind: str) -> str:
+    text = path.read_text(encoding="utf-8")
+    assert before in text
+    return text.replace(before, behind)
+
+
+@pytest.mark.usefixtures("few")
+@pytest.mark.parametrize(
+    ("y", "x"),
+    [
+        (["O4.theta", "O4.theta_dot"], None),
+        (["O4.theta"], "O4.theta_dot"),
+        (["O4.force"], None),
+        ([], None),
+    ],
+)
+def test_of_a_sweep(y: list[str], x: str | None) -> None:
+    text = long_text(RCSR, "from: 150, to: 202, step: 2", "from: 150, to: 202, count: 601")
+    model = mk.loads(text, "rcsr")
+    whole = model.analyze().picture(y, x)
+    assert_thinned(whole, model.stream().picture(y, x))
+
+
+@pytest.mark.usefixtures("few")
+def test_with_rows_that_are_not_reached() -> None:
+    """Beyond a dead centre, which is a mark."""
+    text = long_text(RCSR, "from: 150, to: 202, step: 2", "from: 150, to: 230, count: 601")
+    model = mk.loads(text, "rcsr")
+    whole = model.analyze().picture(["O4.theta"])
+    assert not whole.solved.all()
+    assert_thinned(whole, model.stream().picture(["O4.theta"]))
+
+
+def test_the_command_holds_no_rows(tmp_path: Path) -> None:
+    """A picture of as many rows as cannot be held."""
+    text = long_text(RCSR, "from: 150, to: 202, step: 2", "from: 150, to: 202, count: 1000000")
+    path = tmp_path / "long.yaml"
+    path.write_text(text, encoding="utf-8")
+    words = ["plot", str(path), "--y", "O4.theta", "--quiet", "-o", str(tmp_path / "p.svg")]
+    found = subprocess.run(
+        [sys.executable, "-P", "-m", "mechkin_cli", *words], capture_output=True, check=False
+    )
+    assert found.returncode == 0, found.stderr
+    assert (tmp_path / "p.svg").stat().st_size < 2_000_000
