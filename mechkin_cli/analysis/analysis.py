@@ -494,34 +494,7 @@ class Analysis(Listed):
         self, y: Sequence[str] = (), x: str | None = None, table: str | None = None
     ) -> Picture:
         """What `plot` draws, as plain data; arguments and errors are those of `plot`."""
-        return plots.picture(self.drawing(y, x, table))
-
-    def drawing(
-        self,
-        y: Sequence[str] = (),
-        x: str | None = None,
-        table: str | None = None,
-        places: PlotCurve | None = None,
-    ) -> Drawing:
-        """What a picture is made of; arguments and errors are those of `plot`. With `places` these
-        rows are a part of a run, which goes along them."""
-        y = texts("y", y, '["O4.theta"]')
-        if x is not None:
-            a_text("x", x, '"O4.theta"')
-        if table is not None:
-            a_text("table", table, '"table_03"')
-        if y:
-            title = self.model.name if self.run == SWEEP else self.run
-            return plots.drawing(self, title, y, x, places)
-        known = {layout.name: number for number, layout in enumerate(self.layouts)}
-        if not known:
-            raise UsageError("there is no table to draw; name what to draw")
-        name = next(iter(known)) if table is None else table
-        if name not in known:
-            tables = ", ".join(known)
-            raise UsageError(f"there is no table {name[:LONGEST_NAME]}; tables are {tables}")
-        number = known[name]
-        return plots.table_drawing(self, self.layouts[number], self.tables[number], x, places)
+        return plots.picture(drawing_of(self, y, x, table))
 
     @overload
     def view(self, path: None = None, *, modes: bool = True) -> view.Page: ...
@@ -610,3 +583,31 @@ def _asked_again(
     if run != SWEEP:
         return model.run_free(run, **given)
     return model.analyze(closed_at=closed_at, **given)
+
+
+def drawing_of(
+    one: Analysis,
+    y: Sequence[str] = (),
+    x: str | None = None,
+    table: str | None = None,
+    places: PlotCurve | None = None,
+) -> Drawing:
+    """What the picture of some rows is made of; arguments and errors are those of `Analysis.plot`.
+    With `places` they are a part of a run, which goes along them."""
+    y = texts("y", y, '["O4.theta"]')
+    if x is not None:
+        a_text("x", x, '"O4.theta"')
+    if table is not None:
+        a_text("table", table, '"table_03"')
+    if y:
+        title = one.model.name if one.run == SWEEP else one.run
+        return plots.drawing(one, title, y, x, places)
+    known = {layout.name: number for number, layout in enumerate(one.layouts)}
+    if not known:
+        raise UsageError("there is no table to draw; name what to draw")
+    name = next(iter(known)) if table is None else table
+    if name not in known:
+        tables = ", ".join(known)
+        raise UsageError(f"there is no table {name[:LONGEST_NAME]}; tables are {tables}")
+    number = known[name]
+    return plots.table_drawing(one, one.layouts[number], one.tables[number], x, places)

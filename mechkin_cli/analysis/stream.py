@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import balances, plots
-from mechkin_cli.analysis.analysis import Analysis, by_label
+from mechkin_cli.analysis.analysis import Analysis, by_label, drawing_of
 from mechkin_cli.arguments import a_text
 from mechkin_cli.assembly import rows_of_start
 from mechkin_cli.diagnostics import UsageError
@@ -206,7 +206,7 @@ class Stream:
             for part, own in self.parts():
                 name, unit = ("row", "") if along is None else (along.name, along.unit)
                 places = plots.PlotCurve(name, unit, self.places(part))
-                yield part.analysis.drawing(y, x, table, places), own
+                yield drawing_of(part.analysis, y, x, table, places), own
 
         return plots.thinned_picture(drawings(), self.run_rows)
 

@@ -93,8 +93,8 @@ def test_laws_over_moments_are_those_at_each() -> None:
     [
         ({"first": -1}, "some: of the times"),
         ({"first": 95}, "some: of the times"),
-        ({"parts": 0}, "parts: 1 to 1024"),
-        ({"parts": 2000}, "parts: 1 to 1024"),
+        ({"parts": 0}, "parts: 1 to 1048576"),
+        ({"parts": (1 << 20) + 1}, "parts: 1 to 1048576"),
         ({"last": float("nan")}, "a finite number"),
         ({"last": 0.01}, "rise from the start on"),
     ],
