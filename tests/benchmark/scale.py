@@ -87,11 +87,15 @@ def peers(folder: Path) -> tuple[float, float]:
     return csv, parquet
 
 
-def measured(most: int) -> list[dict[str, float]]:
+MOST_HELD = 10**7
+"""Rows of which the peers, which hold all numbers, are measured."""
+
+
+def measured(most: int) -> list[dict[str, float | None]]:
     """A line for each number of rows."""
     lines = []
     for rows in (10**k for k in range(2, round(math.log10(most)) + 1)):
-        line: dict[str, float] = {"rows": rows}
+        line: dict[str, float | None] = {"rows": rows}
         with TemporaryDirectory() as name:
             folder = Path(name)
             path = folder / "rcsr.yaml"
@@ -100,7 +104,9 @@ def measured(most: int) -> list[dict[str, float]]:
                 program = [sys.executable, "-P", "-m", "mechkin_cli", "analyze", str(path)]
                 out = ["--quiet", "--out", str(folder / way.split()[0])]
                 line[way], line[f"{way} MB"] = cost([*program, *options, *out])
-            line["polars csv"], line["pyarrow parquet"] = peers(folder / "parquet")
+            line["polars csv"] = line["pyarrow parquet"] = None
+            if rows <= MOST_HELD:
+                line["polars csv"], line["pyarrow parquet"] = peers(folder / "parquet")
         lines.append(line)
         print(json.dumps(line), file=sys.stderr, flush=True)
     return lines
@@ -234,7 +240,7 @@ def beside_to_chars(rows: int) -> str:
     return "\n".join(said)
 
 
-def page(lines: Sequence[dict[str, float]]) -> str:
+def page(lines: Sequence[dict[str, float | None]]) -> str:
     """The table, as docs/scale.md has it."""
     heads = ["rows"]
     for way in WAYS:
@@ -245,7 +251,8 @@ def page(lines: Sequence[dict[str, float]]) -> str:
         cells = [f"{line['rows']:,.0f}"]
         for way in WAYS:
             cells += [f"{line[way]:.2f}", f"{line[f'{way} MB']:.0f}"]
-        cells += [f"{line['polars csv']:.2f}", f"{line['pyarrow parquet']:.2f}"]
+        others = (line["polars csv"], line["pyarrow parquet"])
+        cells += ["-" if one is None else f"{one:.2f}" for one in others]
         found.append(f"| {' | '.join(cells)} |")
     return "\n".join([*found, "", slopes(lines, "rows", list(WAYS))])
 
