@@ -34,7 +34,7 @@ from mechkin_cli.errors.rows import (
 from mechkin_cli.expressions import Quantity, exact_literal
 from mechkin_cli.mechanism import Varying, response_quantities
 from mechkin_cli.plan import Demand
-from mechkin_cli.response import ResponseResult, integrate, prepare, watched_stop
+from mechkin_cli.response import ResponseResult, integrate, prepare
 from mechkin_cli.session import Ask, Chart, PreciseConstants, PreciseInputs, RowInputs
 from mechkin_cli.tape import DoubleDoubles, double_doubles, exactly
 
@@ -285,9 +285,7 @@ class ResponseRows(FreeRows):
             [(result.session.plan, self._begun)],
             float(begin),
             moments,
-            stops=[watched_stop(stop) for stop in result.response.stops],
-            tolerance=result.response.tolerance,
-            fixed_step=result.response.fixed_step,
+            result.response,
             packing=result.session.packing,
         )
         return rows.turns[:slots, : rows.report.rows], moments[: rows.report.rows]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic, Place
     from mechkin_cli.kernel import _kernel
     from mechkin_cli.mechanism.constraint import InputConstraint
-    from mechkin_cli.show import Floats
+    from mechkin_cli.show import Bools, Floats
     from mechkin_cli.tape import ExactRows, Tape
     from mechkin_cli.units import Dimension
     from mechkin_cli.verdict import Status
@@ -351,6 +351,19 @@ class Course:
     at: Floats
     values: Floats
     cells: NDArray[np.int64]
+
+    @property
+    def bends(self) -> Bools:
+        """Inner edges (cells - 1,) at which the inputs pass from one formula to another; at the
+        others they turn."""
+        changed = (self.constants[1:] != self.constants[:-1]).any(axis=1)
+        bends: Bools = changed | (self.ways[1:] != self.ways[:-1]).any(axis=1)
+        return bends
+
+    @property
+    def ends(self) -> Floats:
+        """The parameters at which a formula ends: where the inputs bend, and the last one."""
+        return np.append(self.edges[1:-1][self.bends], self.edges[-1])
 
     def part(self, first: int, last: int) -> Course:
         """The places from the row `first` to the row `last`, whose numbers begin with 0."""

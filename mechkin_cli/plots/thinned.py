@@ -52,6 +52,8 @@ def thinned_picture(parts: Iterable[tuple[Drawing, slice]], run_rows: int) -> Pi
 def _shown(part: Drawing, own: slice, length: int) -> NDArray[np.intp]:
     """The rows of a part that a picture shows, of stretches of a length."""
     begin, end, _ = own.indices(part.status.size)
+    if begin >= end:
+        return np.empty(0, dtype=np.intp)
     starts = np.arange(begin, end, length)
     chosen = [starts, np.append(starts[1:], end) - 1]
     changes = np.flatnonzero(np.diff(part.status[begin:end])) + begin

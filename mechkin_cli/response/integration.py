@@ -131,22 +131,21 @@ def integrate(
     starts: Sequence[tuple[Plan, Beginning]],
     begin: float,
     times: Floats | RowTimes,
+    response: ResponseProblem,
     *,
-    stops: Sequence[WatchedStop] = (),
+    stops: Sequence[WatchedStop] | None = None,
     driven: DrivenLaws | None = None,
-    tolerance: float,
-    fixed_step: float | None,
-    straight: bool = False,
     packing: Packing,
     method: int = 0,
     block: int = 0,
     taker: Taker | None = None,
 ) -> list[MotionRows]:
     """Integrates motions of plans of one structure, each from its beginning, packed into lanes,
-    from time `begin` (s) over the rows' `times` (rows,).
+    from time `begin` (s) over the rows' `times` (rows,), with the steps of a response, and through
+    branch points as that wants.
 
-    `stops` go with the values that the plans watch, in order; `driven` with their inputs;
-    `straight`: branch points are passed along the smooth continuation. A `taker` takes the rows of
+    `stops`, else the response's, go with the values that the plans watch, in order; `driven` with
+    their inputs. A `taker` takes the rows of
     one motion in blocks of so many as they are reached, all but the last of them, which are given
     back: their first one has the number `report.first`. With one, none of equally spaced times is
     held.
@@ -171,10 +170,10 @@ def integrate(
         begin=begin,
         times=np.ascontiguousarray(times),
         spaced=spaced,
-        stops=list(stops),
+        stops=[watched_stop(stop) for stop in response.stops] if stops is None else list(stops),
         driven=driven,
-        tolerance=tolerance,
-        fixed_step=fixed_step or 0.0,
+        tolerance=response.tolerance,
+        fixed_step=response.fixed_step or 0.0,
         most_steps=tolerances.MOST_RESPONSE_STEPS,
         dense_rows=tolerances.DENSE_ROWS,
         method=method,
@@ -182,7 +181,7 @@ def integrate(
         iterations=tolerances.NEWTON_ITERATIONS,
         jump=tolerances.JUMP_LIMIT,
         radius=tolerances.SPECTRAL_RADIUS,
-        straight=straight,
+        straight=response.assembly.straight,
         # one motion needs no more than the narrowest packs
         lanes=width(packing.lanes) if packing.lanes or len(starts) > 2 else 2,
         threads=threads_for(len(starts), packing.threads),
@@ -216,11 +215,9 @@ def driven_laws(
     if course is None:
         assert not units
         return _kernel.DrivenLaws(None, [], [], [], [], time_unit, held)
-    # an input turns at the end of a cell, too, where nothing bends: no step has to end there
-    bends = (course.constants[1:] != course.constants[:-1]).any(axis=1)
-    bends |= (course.ways[1:] != course.ways[:-1]).any(axis=1)
-    own = np.concatenate([[True], bends])
-    edges = course.edges[1:-1][bends] * time_unit
+    # no step has to end where a cell does, but nothing bends
+    own = np.concatenate([[True], course.bends])
+    edges = course.edges[1:-1][course.bends] * time_unit
     return _kernel.DrivenLaws(
         compiled(course.tape),
         edges.tolist(),
@@ -230,6 +227,13 @@ def driven_laws(
         time_unit,
         held,
     )
+
+
+def formula_ends(response: ResponseProblem, units: UnitSystem) -> Floats:
+    """The moments (s) at which a formula of a driven coordinate's law ends."""
+    if response.course is None:
+        return np.empty(0)
+    return response.course.ends * float(units.to_si(1.0, TIME))
 
 
 _DIRECTIONS = {"up": 1, "down": -1, "any": 0}

@@ -26,7 +26,13 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.plan import FrictionTold, demand_of
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.response.integration import Beginning, driven_laws, integrate, watched_stop
+from mechkin_cli.response.integration import (
+    Beginning,
+    driven_laws,
+    formula_ends,
+    integrate,
+    watched_stop,
+)
 from mechkin_cli.response.march import (
     RowTimes,
     beginning_of,
@@ -38,7 +44,6 @@ from mechkin_cli.response.march import (
 from mechkin_cli.response.report import MotionEnd, MotionRows
 from mechkin_cli.session import Ask, Chart, KernelInputs
 from mechkin_cli.structure import holding
-from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -165,7 +170,7 @@ class RestingMotion:
     ) -> None:
         self.free, self.response, self.packing = free, response, packing
         self.stops, self.beside, self.as_free = list(stops), dict(beside), friction
-        self.begin, self._bends = begin, _bends(free, response)
+        self.begin, self._ends = begin, formula_ends(response, free.problem.units)
         self.held = _held_at(free, response, begun, self.stops)
         self.others = [
             _held_at(free, response, begun, [one if k == own else k for k in self.stops])
@@ -247,11 +252,9 @@ class RestingMotion:
             [(self.held.session.plan, self.begun)],
             self.begin,
             times,
+            self.response,
             stops=[self._watched(number) for number in range(len(self.response.stops))],
             driven=self.held.laws,
-            tolerance=self.response.tolerance,
-            fixed_step=self.response.fixed_step,
-            straight=self.free.problem.assembly.straight,
             packing=self.packing,
             block=block,
             taker=taker,
@@ -310,7 +313,7 @@ class RestingMotion:
         """Values, rates and accelerations of the inputs at some moments (3, inputs, moments): where
         a piece of a law ends the accelerations that the motion comes with, as its rows have."""
         orders = laws.over(np.ascontiguousarray(times))
-        for k in np.flatnonzero(np.isin(times, self._bends) & (times > self.begin)):
+        for k in np.flatnonzero(np.isin(times, self._ends) & (times > self.begin)):
             before = laws.at(float(np.nextafter(times[k], self.begin)))
             orders[2, :, k] = [second for _, _, second in before]
         return orders
@@ -396,13 +399,6 @@ class RestingMotion:
         accelerations = np.concatenate([chart.accelerations, none])
         friction = self._friction(chart.friction)
         return replace(moved, chart=Chart(direction, rates, accelerations, friction))
-
-
-def _bends(free: Session, response: ResponseProblem) -> Floats:
-    """The moments (s) at which a piece of a driven coordinate's law ends."""
-    if response.course is None:
-        return np.empty(0)
-    return response.course.edges[1:] * float(free.problem.units.to_si(1.0, TIME))
 
 
 WRENCH = 6

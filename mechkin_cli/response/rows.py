@@ -18,7 +18,7 @@ from mechkin_cli.mechanism import (
     dimension_of,
 )
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.response.integration import ending
+from mechkin_cli.response.integration import ending, formula_ends
 from mechkin_cli.response.report import MotionEnd
 from mechkin_cli.response.result import ResponseResult
 from mechkin_cli.session import Chart, input_unit
@@ -68,7 +68,7 @@ def rows_problem(
         at = [] if laws is None else laws.at(stop)
         driven = tuple(_stopped(free, item, at[number]) for number, item in enumerate(driven))
     if laws is not None and response.course is not None:
-        edges = response.course.edges[1:] * float(free.problem.units.to_si(1.0, TIME))
+        edges = formula_ends(response, free.problem.units)
         driven = _before_jumps(free, edges, laws, driven, moments, begins=place.first == 0)
     return free.problem.moved(MotionInputs(driven, place.rows, moments, response.course))
 

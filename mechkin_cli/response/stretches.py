@@ -22,7 +22,7 @@ from mechkin_cli.response.impacts import (
     stopped_at_start,
     touched_limit,
 )
-from mechkin_cli.response.integration import integrate, watched_stop, with_loads
+from mechkin_cli.response.integration import integrate, with_loads
 from mechkin_cli.response.jumps import at_jump, before_jump
 from mechkin_cli.response.march import (
     RowTimes,
@@ -110,11 +110,8 @@ def integrated_rows(
         starts,
         times.row(0),
         times,
-        stops=[watched_stop(stop) for stop in response.stops],
+        response,
         driven=first.driven,
-        tolerance=response.tolerance,
-        fixed_step=response.fixed_step,
-        straight=first.chosen.problem.assembly.straight,
         packing=packing,
         block=block,
         taker=taker,
@@ -339,11 +336,8 @@ class Stretches:
             [(one.free.plan, begun)],
             begin,
             times,
-            stops=[watched_stop(each) for each in one.response.stops],
+            one.response,
             driven=one.driven,
-            tolerance=one.response.tolerance,
-            fixed_step=one.response.fixed_step,
-            straight=one.chosen.problem.assembly.straight,
             packing=self._packing,
             block=block,
             taker=taker,

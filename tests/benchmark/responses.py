@@ -40,6 +40,7 @@ import mechkin_cli as mk
 from benchmarks import sevenr
 from mechkin_cli.bench.measurement import in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
+from mechkin_cli.record import replace
 from mechkin_cli.response.integration import integrate
 from mechkin_cli.response.report import MotionRows
 from mechkin_cli.response.rows import Prepared
@@ -184,8 +185,8 @@ class Case:
             [(one.free.plan, begun)] * starts,
             float(times[0]),
             times,
-            tolerance=tolerance,
-            fixed_step=fixed_step,
+            replace(one.response, tolerance=tolerance, fixed_step=fixed_step),
+            stops=(),
             packing=Packing(0, 1),
             method=method,
         )
