@@ -7,6 +7,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
+from limits.machines import TOGETHER
 from scipy.optimize import nnls
 
 import mechkin_cli as mk
@@ -430,29 +431,6 @@ def test_a_carriage_rubs_by_what_lies_on_its_limit() -> None:
     np.testing.assert_allclose(rows["X.s_dot"], expected, atol=1e-9)
     np.testing.assert_allclose(np.abs(rows["X.normal_load"][time > at]), 50.0, rtol=1e-11)
     assert set(rows["row.status"]) == {"ok"}
-
-
-TOGETHER = """
-format: 1
-plane: xy
-units: {{length: m, angle: rad, mass: kg, force: N}}
-links:
-  bed: {{mass: 1, center_of_mass: [0, 0]}}
-  a: {{mass: 2, center_of_mass: [0, 0]}}
-  b: {{mass: 3, center_of_mass: [1, 0]}}
-joints:
-  X: {{type: P, links: [ground, bed], point: [0, 0], axis: [1, 0]}}
-  S: {{type: P, links: [bed, a], point: [0, 0], axis: [0, 1]}}
-  T: {{type: P, links: [bed, b], point: [1, 0], axis: [0, 1]}}
-couplings: {{K: {{type: linear, terms: {{S.s: 1, T.s: -1}}}}}}
-loads: [{{type: gravity, g: [0, -10]}}MORE]
-limits: {{S.s: {{min: -2{one}}}, T.s: {{min: -2{other}}}}}
-responses:
-  fall:
-    start: {{S.s: 0, X.s: 0, X.s_dot: 0.5}}
-    efforts: {{S.s: "20 N*max(0, time/(1 s) - 4)"}}
-    time: {{from: 0, to: 8, step: 0.1}}
-"""
 
 
 def together(one: float | None, other: float | None, more: str = "") -> mk.Analysis:

@@ -5,27 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from limits.machines import on_a_platform
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
 
 G, HERTZ = 8.0, 3.0
-FILE = """format: 1
-units: {{length: m, angle: rad, mass: kg, force: N}}
-links:
-  p: {{mass: 1, center_of_mass: [0, 0, 0]}}
-  b: {{mass: 2, center_of_mass: [0, 0, 0]}}
-joints:
-  D: {{type: P, links: [ground, p], point: [1, 0, 0], axis: [0, 0, 1]}}
-  S: {{type: P, links: [p, b], point: [0, 0, 0], axis: [0, 0, 1]}}
-limits: {{S.s: {{min: 0, restitution: 0}}}}
-loads: [{{type: gravity, g: [0, 0, -8]}}]
-responses:
-  run:
-    start: {{S.s: 0}}
-    time: {time}
-    driven: {{D.s: {{law: sine, amplitude: {amplitude}, frequency: 3 Hz}}}}
-"""
 
 
 def landings(part_of_gravity: float, end: float) -> list[float]:
@@ -62,8 +47,8 @@ def landings(part_of_gravity: float, end: float) -> list[float]:
 
 def impacts(part_of_gravity: float, time: str) -> list[float]:
     amplitude = part_of_gravity * G / (2.0 * np.pi * HERTZ) ** 2
-    text = FILE.format(amplitude=f"{amplitude!r} m", time=time)
-    table = mk.loads(text, "platform").respond("run").impacts
+    drive = f"{{law: sine, amplitude: {amplitude!r} m, frequency: {HERTZ} Hz}}"
+    table = mk.loads(on_a_platform(drive=drive, time=time), "platform").respond("run").impacts
     times = np.asarray(table.columns[0].values)
     return times[times > 0.0].tolist()  # it begins at rest
 
@@ -85,9 +70,10 @@ def test_lands_once_in_each_period(part: float, time: str) -> None:
     assert impacts(part, time) == pytest.approx(expected, abs=1e-7)
 
 
-def test_turning_points_of_a_law_are_no_bends(monkeypatch) -> None:
-    """What is looked at in every step of a motion does not grow with the periods of a sine."""
-    given = []
+@pytest.fixture
+def edges(monkeypatch: pytest.MonkeyPatch) -> list[list[float]]:
+    """The moments that every step of a motion looks at, of each motion."""
+    given: list[list[float]] = []
     made = _kernel.DrivenLaws
 
     def laws(*arguments):
@@ -95,6 +81,19 @@ def test_turning_points_of_a_law_are_no_bends(monkeypatch) -> None:
         return made(*arguments)
 
     monkeypatch.setattr(_kernel, "DrivenLaws", laws)
+    return given
+
+
+def test_turning_points_of_a_law_are_no_bends(edges: list[list[float]]) -> None:
+    """What is looked at in every step does not grow with the periods of a sine."""
     impacts(0.5, "{from: 0, to: 50, count: 101}")
-    assert given
-    assert all(edges == [] for edges in given)
+    assert edges
+    assert all(each == [] for each in edges)
+
+
+def test_ends_of_a_laws_pieces_are_bends(edges: list[list[float]]) -> None:
+    rise, back = (f"{{for: 1 s, to: {to} m, law: harmonic}}" for to in (0.1, 0.0))
+    drive = f"{{law: sequence, segments: [{rise}, {{for: 1 s, law: dwell}}, {back}]}}"
+    mk.loads(on_a_platform(drive=drive), "platform").respond("run")
+    assert edges
+    assert all(each == pytest.approx([1.0, 2.0]) for each in edges)

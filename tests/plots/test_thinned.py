@@ -82,6 +82,27 @@ def test_with_rows_that_are_not_reached() -> None:
     assert_thinned(whole, model.stream().picture(["O4.theta"]))
 
 
+@pytest.mark.usefixtures("few")
+def test_of_a_response_that_is_stopped() -> None:
+    """Its event is a mark, at the stop's own moment."""
+    text = """format: 1
+plane: xy
+units: {length: m, angle: rad}
+links: {bob: {mass: 1, center_of_mass: [0, -1]}}
+joints: {O: {type: R, links: [ground, bob], point: [0, 0]}}
+loads: [{type: gravity, g: [0, -9.80665]}]
+responses:
+  swing:
+    start: {O.theta: 1}
+    time: {from: 0, to: 3, count: 901}
+    stop: [{value: O.theta, at: -0.5}]
+"""
+    model = mk.loads(text, "pendulum")
+    whole = model.respond("swing").picture(["O.theta"])
+    assert whole.marks
+    assert_thinned(whole, model.stream(run="swing").picture(["O.theta"]))
+
+
 def test_the_command_holds_no_rows(tmp_path: Path) -> None:
     """A picture of as many rows as cannot be held."""
     text = long_text(RCSR, "from: 150, to: 202, step: 2", "from: 150, to: 202, count: 1000000")

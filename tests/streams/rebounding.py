@@ -3,6 +3,7 @@ limits act on."""
 
 from __future__ import annotations
 
+from limits.machines import TOGETHER
 from streams.motions import BENT, REDUNDANT
 
 HEAD = """format: 1
@@ -91,24 +92,11 @@ SPRUNG = (
 """The same on a spring, so heavy that it is not driven."""
 
 SHARED = (
-    HEAD
+    TOGETHER.format(one=", restitution: 0.5", other=", restitution: 0.5")
+    .replace("MORE", "")
+    .replace("fall:", "r:")
+    .replace("{from: 0, to: 8, step: 0.1}", "TIME")
     + f"""\
-links:
-  bed: {{mass: 1, center_of_mass: [0, 0]}}
-  a: {{mass: 2, center_of_mass: [0, 0]}}
-  b: {{mass: 3, center_of_mass: [1, 0]}}
-joints:
-  X: {{type: P, links: [ground, bed], point: [0, 0], axis: [1, 0]}}
-  S: {{type: P, links: [bed, a], point: [0, 0], axis: [0, 1]}}
-  T: {{type: P, links: [bed, b], point: [1, 0], axis: [0, 1]}}
-couplings: {{K: {{type: linear, terms: {{S.s: 1, T.s: -1}}}}}}
-loads: [{{type: gravity, g: [0, -10]}}]
-limits: {{S.s: {{min: -2, restitution: 0.5}}, T.s: {{min: -2, restitution: 0.5}}}}
-responses:
-  r:
-    start: {{S.s: 0, X.s: 0, X.s_dot: 0.5}}
-    efforts: {{S.s: "20 N*max(0, time/(1 s) - 4)"}}
-    time: TIME
 tables:
   - {{name: t, run: r, columns: [time, X.s, S.s, S.effort, T.effort, S.force.y, X.force.y, {WORK}]}}
 """

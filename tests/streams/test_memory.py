@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,9 @@ from pathlib import Path
 import pytest
 from streams.motions import BENT, REDUNDANT
 from streams.rebounding import BALL, SPRUNG, timed
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
 
 FOUR_BAR = """format: 1
 plane: xy
@@ -149,3 +153,34 @@ def test_energies_and_balances_hold_no_rows(tmp_path: Path) -> None:
     few, many = (peaks_of(tmp_path, RUBBING.format(count=count))[1] for count in (100_000, 500_000))
     # held rows would take 100 bytes each at least
     assert many < few + 15_000_000
+
+
+FAULTS = """
+import resource, sys
+import numpy as np
+from mechkin_cli.kernel import _kernel
+if sys.argv[1] != "0":
+    _kernel.keep_freed_memory(int(sys.argv[1]))
+def part():
+    arrays = [np.ones(32768) for _ in range(30)]
+for _ in range(5):
+    part()
+before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+for _ in range(50):
+    part()
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+
+
+@pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="others keep what is freed")
+def test_freed_memory_is_kept_for_the_next_part() -> None:
+    """No page is asked for again; 50 parts have 96 000 of them."""
+
+    def faults(megabytes: int) -> int:
+        words = [sys.executable, "-P", "-c", FAULTS, str(megabytes)]
+        return int(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+
+    assert faults(0) > 10_000
+    assert faults(tolerances.FREED_MEGABYTES) < 1_000
+    with pytest.raises(ValueError, match="not negative"):
+        _kernel.keep_freed_memory(-1)
