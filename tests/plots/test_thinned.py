@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from sweep.cut import cut
 
 import mechkin_cli as mk
-from mechkin_cli.plots import thinned
+from mechkin_cli.plots import Drawing, PlotCurve, thinned
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 RCSR = MECHANISMS / "dissertation" / "rcsr.yaml"
@@ -114,3 +115,42 @@ def test_the_command_holds_no_rows(tmp_path: Path) -> None:
     )
     assert found.returncode == 0, found.stderr
     assert (tmp_path / "p.svg").stat().st_size < 2_000_000
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_of_any_rows_cut_anywhere(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Numbers by chance, with gaps, what is infinite and verdicts that come and go: what is shown
+    begins, ends and reaches as far, and changes its verdict as often, however parts are cut."""
+    draw = np.random.default_rng(seed)
+    rows = int(draw.integers(2, 400))
+    monkeypatch.setattr(thinned, "STRETCHES", int(draw.integers(1, 60)))
+    values = draw.normal(size=(2, rows))
+    values[draw.random((2, rows)) < 0.1] = np.nan
+    values[draw.random((2, rows)) < 0.02] = np.inf
+    status = (draw.random(rows) < 0.05).astype(np.int8)
+    places = np.arange(float(rows))
+
+    def some(begin: int, end: int) -> Drawing:
+        along = PlotCurve("row", "", places[begin:end])
+        curves = tuple(PlotCurve(f"c{k}", "mm", own[begin:end]) for k, own in enumerate(values))
+        return Drawing("any", curves, None, along, (), status[begin:end], frozenset())
+
+    cuts = np.unique(np.concatenate([[0], draw.integers(0, rows, draw.integers(0, 6)), [rows]]))
+    # neighbouring parts share a row, which is of the first of them
+    parts = [
+        (some(max(begin - 1, 0), end), slice(min(begin, 1), None))
+        for begin, end in pairwise(cuts.tolist())
+    ]
+    found = thinned.thinned_picture(parts, rows)
+    shown = found.parameter.values.astype(int)
+    assert (np.diff(shown) > 0).all()
+    assert shown[0] == 0
+    assert shown[-1] == rows - 1
+    changes = np.flatnonzero(np.diff(status))
+    assert np.isin([changes, changes + 1], shown).all()
+    for curve, own in zip(found.panels[0], values, strict=True):
+        assert np.array_equal(curve.values, own[shown], equal_nan=True)
+        finite = own[np.isfinite(own)]
+        if finite.size:
+            reached = curve.values[np.isfinite(curve.values)]
+            assert (reached.max(), reached.min()) == (finite.max(), finite.min())
