@@ -29,8 +29,7 @@ def moved(one: Prepared, begin: float, times: Any, **named: Any) -> MotionRows:
         [(one.free.plan, one.begun)],
         begin,
         times,
-        tolerance=1e-9,
-        fixed_step=None,
+        one.response,
         packing=one.free.packing,
         **named,
     )
