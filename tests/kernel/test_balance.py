@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.kernel.functions import widths
 from mechkin_cli.session import Packing, balance, turn_count
 from mechkin_cli.show import Floats
 from mechkin_cli.statics.places import Places, Statics
@@ -144,7 +145,7 @@ def test_slopes_that_are_wrong_lead_nowhere() -> None:
     assert at.times.size == 0
 
 
-@pytest.mark.parametrize(("lanes", "threads"), [(2, 1), (4, 1), (8, 1), (0, 3)])
+@pytest.mark.parametrize(("lanes", "threads"), [*((lanes, 1) for lanes in widths()), (0, 3)])
 def test_bits_depend_on_no_lanes_threads_or_other_places(lanes: int, threads: int) -> None:
     model = mk.loads(CHAIN)
     rng = np.random.default_rng(5)
