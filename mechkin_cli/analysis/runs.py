@@ -282,16 +282,43 @@ def _asked(
             f"{model.name} has no sweep: its file has no motion:; its responses are run by "
             f'respond("{model.runs[0]}")'
         )
-    session, problem = model.design.session, model.problem
-    if closed_at is not None:
-        session = _closed_at(problem, closed_at)
     if mode is not None:
         a_text("mode", mode, '"A"')
+    named = None if quantities is None else texts("quantities", quantities, '["O4.theta"]')
+    of_tables = None if tables is None else texts("tables", tables, '["table_03"]')
+    if closed_at is None:
+        return _asked_as_driven(model.design, named, of_tables, mode, packing)
+    session = _closed_at(model.problem, closed_at)
+    return _asked_of(model.design, session, named, of_tables, mode, packing)
+
+
+@remembered
+def _asked_as_driven(
+    design: Design,
+    quantities: tuple[str, ...] | None,
+    tables: tuple[str, ...] | None,
+    mode: str | None,
+    packing: Packing,
+) -> _Asked:
+    """The same with the loops closed as the file's are: a script asks one model again and again."""
+    return _asked_of(design, design.session, quantities, tables, mode, packing)
+
+
+def _asked_of(
+    design: Design,
+    session: Session,
+    quantities: tuple[str, ...] | None,
+    tables: tuple[str, ...] | None,
+    mode: str | None,
+    packing: Packing,
+) -> _Asked:
+    built, problem = design.built, design.problem
+    if mode is not None:
         session = session.in_mode(mode)
     if problem.motion.rest is not None:
         session = statics.rested(session)
-    layouts = chosen_tables(model.built, tables, SWEEP)
-    balances = chosen(model.built.balances, tables)
+    layouts = chosen_tables(built, tables, SWEEP)
+    balances = chosen(built.balances, tables)
     named = wanted_names(session, SWEEP, (), quantities)
     names = [*wanted_names(session, SWEEP, layouts, None), *named]
     asked = tuple(names)
@@ -303,7 +330,7 @@ def _asked(
     unasked = {*wanted_names(session, SWEEP, own, None)} - {*named} if own else set()
     packed = session if packing == session.packing else session.packed(packing)
     sweep = Sweep(packed, names, unasked=unasked)
-    return _Asked(sweep, layouts, asked, chosen(model.built.coefficients, tables), balances)
+    return _Asked(sweep, layouts, asked, chosen(built.coefficients, tables), balances)
 
 
 def run_sweep(
