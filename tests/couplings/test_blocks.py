@@ -9,6 +9,7 @@ from random_families.coupled import draw, text_of
 
 import mechkin_cli as mk
 from benchmarks import rcsr
+from mechkin_cli.kernel.functions import widths
 
 MOTION = "from: 150 deg, to: 202 deg, step: 2 deg"
 
@@ -90,7 +91,7 @@ def test_bits_do_not_depend_on_lanes_and_threads(seed: int) -> None:
         *(f"{k}.power" for k in model.problem.mechanism.couplings),
     ]
     one = model.analyze(lanes=2, threads=1)
-    for lanes, threads in ((4, 1), (0, 1), (0, 2)):
+    for lanes, threads in (*((width, 1) for width in widths()), (0, 2)):
         other = model.analyze(lanes=lanes, threads=threads)
         for name in names:
             assert one[name].tobytes() == other[name].tobytes()

@@ -11,6 +11,7 @@ import pytest
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import InvalidFile
+from mechkin_cli.kernel.functions import widths
 from mechkin_cli.tape.double_double import exactly
 
 SPUR = """
@@ -280,7 +281,7 @@ def test_friction_below_zero_is_refused() -> None:
     assert any(d.limit == "at least 0" for d in told.value.diagnostics)
 
 
-@pytest.mark.parametrize("lanes", [2, 4])
+@pytest.mark.parametrize("lanes", widths())
 def test_rows_are_the_same_in_lanes_of_any_width(lanes: int) -> None:
     names = ["A.effort", "G.efficiency", "G.friction_power", "B.force"]
     for text in (SPUR.replace("LOAD", "6"), WORM.replace("RATE", "10").replace("MU", "0.08")):

@@ -16,6 +16,7 @@ from means import mean_over_the_way, rms_over_the_way
 from references import FILE_OF
 
 import mechkin_cli as mk
+from mechkin_cli.kernel.functions import widths
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 NUMBER = re.compile(r"^  (\w+): *([\d.]+) (\w+) *(#.*)?$", re.M)
@@ -126,7 +127,7 @@ def test_bytes_do_not_depend_on_the_call(stem: str, seed: int) -> None:
     asked = [str(name) for name in rng.choice(numbers, 5, replace=False)]
     whole = model.vary(values, asked)
     order = rng.permutation(11)
-    lanes, threads = int(rng.choice([2, 4])), int(rng.choice([1, 2, 3]))
+    lanes, threads = int(rng.choice(widths())), int(rng.choice([1, 2, 3]))
     mixed = model.vary(
         {name: values[name][order] for name in names[::-1]},
         asked[::-1],
