@@ -21,6 +21,7 @@ import numpy as np
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import Columns, TableColumn, TableLayout, Words, row_texts, run_parameter
+from mechkin_cli.tolerances import LARGEST_DRAWN
 from mechkin_cli.units import FORCE, LENGTH, MOMENT
 from mechkin_cli.verdict import Status, has_solution
 from mechkin_cli.view import run_marks
@@ -189,6 +190,14 @@ def picture(one: Drawing) -> Picture:
         UsageError: what cannot stand in one picture.
     """
     drawn, along = one.curves, one.parameter
+    for curve in (*drawn, *(() if one.against is None else (one.against,))):
+        largest = np.max(np.abs(curve.values), where=np.isfinite(curve.values), initial=0.0)
+        if largest > LARGEST_DRAWN:
+            raise UsageError(
+                f"{curve.label} reaches {largest:.3g} {curve.unit}".rstrip()
+                + f", and no axis goes beyond {LARGEST_DRAWN:g}; draw it in a larger unit, or a "
+                "part of it"
+            )
     if any(curve.is_vector for curve in drawn):
         xs, ys = _in_plane(drawn, one.against)
         return _picture(one, xs, (ys,), is_plane=True)

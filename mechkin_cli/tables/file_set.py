@@ -330,14 +330,14 @@ def _without_interrupts(work: Callable[[], None]) -> None:
 
 
 _CURES = {
-    errno.ENOSPC: "the disk is full; free some space or choose another folder with --out",
-    errno.EDQUOT: "the disk quota is used up; free some space or choose another folder with --out",
+    errno.ENOSPC: "the disk is full; free some space or choose another place with --out",
+    errno.EDQUOT: "the disk quota is used up; free some space or choose another place with --out",
     errno.EFBIG: "the file is larger than is allowed here; write fewer rows or columns",
-    errno.EACCES: "no permission to write there; choose another folder with --out",
-    errno.EPERM: "no permission to write there; choose another folder with --out",
-    errno.EROFS: "the file system is read-only; choose another folder with --out",
-    errno.EEXIST: "a file stands where a folder is needed; choose another folder with --out",
-    errno.ENOTDIR: "a file stands where a folder is needed; choose another folder with --out",
+    errno.EACCES: "no permission to write there; choose another place with --out",
+    errno.EPERM: "no permission to write there; choose another place with --out",
+    errno.EROFS: "the file system is read-only; choose another place with --out",
+    errno.EEXIST: "a file stands where a folder is needed; choose another place with --out",
+    errno.ENOTDIR: "a file stands where a folder is needed; choose another place with --out",
     errno.EISDIR: "a folder stands where a file is to be written; move it or choose another --out",
     errno.ELOOP: "a symbolic link there leads nowhere; remove it or choose another --out",
     errno.ENAMETOOLONG: "the name is too long; choose a shorter one with --out",
@@ -381,11 +381,11 @@ def refusal(target: Path) -> Iterator[None]:
 def refused(target: Path, error: OSError, rows: int | None = None) -> UsageError:
     """What is said of a file that cannot be written, of which so many rows were; None: no table."""
     reason = error.strerror or str(error)
-    cure = _CURES.get(error.errno or 0, f"{reason}; choose another folder with --out")
+    cure = _CURES.get(error.errno or 0, f"{reason}; choose another place with --out")
     if getattr(error, "winerror", None) in _OPEN_ELSEWHERE:
         cure = (
             "no permission to write there, or another program has it open; close it there or "
-            "choose another folder with --out"
+            "choose another place with --out"
         )
     done = "" if rows is None else f" after {rows} rows"
     return UsageError(f"cannot write {target}{done}: {cure}")

@@ -10,6 +10,10 @@ LARGEST_NUMBER: Final = 1e100
 """SI value of a field above which it is a slip of the pen: products of three such values are the
 last that stay doubles (1.8e308); beyond, cells would be empty without a reason."""
 
+LARGEST_DRAWN: Final = 1e300
+"""Size in its unit above which no curve is drawn: the margins and steps of its axis would be no
+doubles."""
+
 SMALLEST_DIVISOR: Final = 1e-60
 """SI value of a duration, a radius or a number of teeth below which it is a slip of the pen: the
 third derivative of a rise of 1e100 over that time is the last that stays a double."""

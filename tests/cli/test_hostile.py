@@ -96,7 +96,7 @@ def test_a_read_only_folder(folder: Path) -> None:
     if os.access(folder / "out", os.W_OK):
         pytest.skip("this user may write everywhere")
     found = run(folder, [*MECHKIN, "analyze", "crank.yaml"])
-    one_sentence(found, 2, "no permission to write there; choose another folder with --out")
+    one_sentence(found, 2, "no permission to write there; choose another place with --out")
 
 
 @pytest.mark.parametrize("out", ["/dev/full", "/dev/null/x", "crank.yaml", "/proc/nowhere", "loop"])

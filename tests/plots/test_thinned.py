@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from sweep.cut import cut
 
 import mechkin_cli as mk
@@ -117,6 +118,91 @@ def test_the_command_holds_no_rows(tmp_path: Path) -> None:
     assert (tmp_path / "p.svg").stat().st_size < 2_000_000
 
 
+def assert_no_gap_is_crossed(values: np.ndarray, shown: np.ndarray) -> None:
+    """Between rows with numbers that a line joins all have one, and gaps that are shown begin and
+    end where they do."""
+    known = np.isfinite(values)
+    for first, behind in pairwise(shown.tolist()):
+        if known[first] and known[behind]:
+            assert known[first:behind].all()
+        elif known[first] or known[behind]:
+            assert behind == first + 1
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_closed_curves_pass_all_rows(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of many turns, some of them alike: each row lies within a dot of the lines that are drawn,
+    and each line within one of those of all rows."""
+    draw = np.random.default_rng([7, seed])
+    rows = int(draw.integers(3000, 9000))
+    monkeypatch.setattr(thinned, "STRETCHES", int(draw.integers(3, 200)))
+    turns = draw.choice([0.3, 7.0, 60.0, 400.0])
+    angle = np.linspace(0.0, 2 * np.pi * turns, rows)
+    grown = 1.0 + draw.choice([0.0, 0.5]) * np.linspace(0.0, 1.0, rows)
+    x = grown * np.cos(angle) + 0.3 * np.cos(2 * angle)
+    y = grown * np.sin(angle) * draw.choice([1.0, 1e-9, 1e9])
+    if seed % 3 == 0:
+        y[draw.random(rows) < 0.001] = np.nan
+    cuts = [0, *sorted(draw.integers(1, rows, 4).tolist()), rows]
+    found = thinned.thinned_picture(
+        [
+            (one_of(x, y, slice(max(begin - 1, 0), end)), slice(min(begin, 1), None))
+            for begin, end in pairwise(cuts)
+        ],
+        rows,
+    )
+    drawn = found.x[0].values, found.panels[0][0].values
+    scale = np.nanmax([x, y], axis=1) - np.nanmin([x, y], axis=1)
+    for points, others in (((x, y), drawn), (drawn, (x, y))):
+        assert distance(points, others, scale) < 1.01 / 1024 * np.sqrt(2)
+
+
+def one_of(x: np.ndarray, y: np.ndarray, rows: slice) -> Drawing:
+    along = PlotCurve("row", "", np.arange(float(x.size))[rows])
+    curves, status = (PlotCurve("y", "mm", y[rows]),), np.zeros(x[rows].size, dtype=np.int8)
+    return Drawing("any", curves, PlotCurve("x", "N", x[rows]), along, (), status, frozenset())
+
+
+def distance(points: tuple, lines: tuple, scale: np.ndarray) -> float:
+    """Of the farthest point, and of the farthest middle between two, from lines, in parts of the
+    picture; by lines cut into pieces far below a dot."""
+    place = np.stack(points, axis=1) / scale
+    middles = (place[1:] + place[:-1]) / 2
+    place = np.concatenate([place, middles])
+    place = place[np.isfinite(place).all(axis=1)]
+    way = np.stack(lines, axis=1) / scale
+    steps = np.diff(way, axis=0)
+    length = np.nan_to_num(np.abs(steps).max(axis=1))
+    count = np.where(np.isfinite(steps).all(axis=1), np.ceil(length * 4096), 0).astype(int)
+    owner = np.repeat(np.arange(count.size), count)
+    number = np.arange(owner.size) - np.repeat(np.cumsum(count) - count, count)
+    dense = way[:-1][owner] + (number / count[owner])[:, None] * steps[owner]
+    every = np.concatenate([dense, way[np.isfinite(way).all(axis=1)]])
+    return float(cKDTree(every).query(place)[0].max())
+
+
+def test_a_curve_of_many_turns_is_no_larger_than_one_of_few() -> None:
+    """Turns that would be drawn over others are left out, and the picture is that of one turn."""
+    rows = 200_000
+    angle = np.linspace(0.0, 2 * np.pi * 3777.7, rows)
+    x, y = np.cos(angle), np.sin(angle)
+    parts = [
+        (one_of(x, y, slice(begin, begin + 20_000)), slice(None))
+        for begin in range(0, rows, 20_000)
+    ]
+    found = thinned.thinned_picture(parts, rows)
+    drawn = found.x[0].values, found.panels[0][0].values
+    assert drawn[0].size < 65_536
+    assert distance((x[:5000], y[:5000]), drawn, np.array([2.0, 2.0])) < 2 / 1024
+
+
+def test_numbers_beyond_every_axis_are_refused() -> None:
+    x = np.array([0.0, 1.0, 2.0])
+    one = one_of(x, np.array([1.0, -1e305, np.nan]), slice(None))
+    with pytest.raises(mk.MechkinError, match=r"y reaches 1e\+305 mm, and no axis goes beyond"):
+        thinned.thinned_picture([(one, slice(None))], 3)
+
+
 @pytest.mark.parametrize("seed", range(200))
 def test_of_any_rows_cut_anywhere(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers by chance, with gaps, what is infinite and verdicts that come and go: what is shown
@@ -150,6 +236,7 @@ def test_of_any_rows_cut_anywhere(seed: int, monkeypatch: pytest.MonkeyPatch) ->
     assert np.isin([changes, changes + 1], shown).all()
     for curve, own in zip(found.panels[0], values, strict=True):
         assert np.array_equal(curve.values, own[shown], equal_nan=True)
+        assert_no_gap_is_crossed(own, shown)
         finite = own[np.isfinite(own)]
         if finite.size:
             reached = curve.values[np.isfinite(curve.values)]
