@@ -94,7 +94,7 @@ class Claim:
             self._close()
             raise UsageError(
                 f"another run of mechkin is writing to {self.folder}; wait until it ends, or "
-                "choose another place with --out"
+                "choose another folder with --out"
             ) from None
         return True
 
