@@ -130,12 +130,12 @@ def main() -> None:
     print("A02: loops, s of motion, ms in all, off by (rad), published by others")
     for loops, end in A02:
         model = loads(text(loops, 0.0, end, A02_RATE))
-        best = best_times({loops: _run(model)}, given.rounds)[loops]
+        shortest = best_times({loops: _run(model)}, given.rounds)[loops]
         found = model.respond("fall", ["A0.theta"], threads=1)
         exact = pendulum(loops, 0.0, np.asarray(found["time"], float), A02_RATE)
         off = float(np.max(np.abs(found["A0.theta"] - exact)))
         said = PUBLISHED.get((loops, end), "")
-        print(f"{loops:>5} {end:5g} {1000 * best:9.2f} {off:10.1e}  {said}".rstrip())
+        print(f"{loops:>5} {end:5g} {1000 * shortest:9.2f} {off:10.1e}  {said}".rstrip())
 
 
 def _run(model: Model) -> Callable[[], object]:
