@@ -163,24 +163,37 @@ def drawing(
         places: what the run goes along at the rows of a part; None: they are all.
 
     Raises:
-        UsageError: nothing to draw, or words.
+        UsageError: nothing to draw, words, or numbers beyond every axis.
         ExpressionError: an unknown name, or dimensions that do not fit.
     """
     drawn = tuple(one if isinstance(one, PlotCurve) else curve_of(analysis, one) for one in y)
     if not drawn:
         raise UsageError(f"{title} has nothing to draw; name what to draw, with --y A.effort")
+    against = curve_of(analysis, x) if isinstance(x, str) else x
+    for curve in drawn if against is None else (*drawn, against):
+        _refuse_huge(curve)
     along = parameter_curve(analysis) if places is None else places
     marks = run_marks(analysis, along.label, along.values, whole=places is None)
     label = analysis.result.units.label
     return Drawing(
         title,
         drawn,
-        curve_of(analysis, x) if isinstance(x, str) else x,
+        against,
         along,
         tuple((float(str(mark["x"])), str(mark["text"])) for mark in marks),
         analysis.result.status,
         frozenset(label(dimension) for dimension in (LENGTH, FORCE, MOMENT)),
     )
+
+
+def _refuse_huge(curve: PlotCurve) -> None:
+    largest = np.max(np.abs(curve.values), where=np.isfinite(curve.values), initial=0.0)
+    if largest > LARGEST_DRAWN:
+        reached = f"{curve.label} reaches {largest:.3g} {curve.unit}".rstrip()
+        raise UsageError(
+            f"{reached}, and no axis goes beyond {LARGEST_DRAWN:g}; draw it in a larger unit, or "
+            "a part of it"
+        )
 
 
 def picture(one: Drawing) -> Picture:
@@ -190,14 +203,6 @@ def picture(one: Drawing) -> Picture:
         UsageError: what cannot stand in one picture.
     """
     drawn, along = one.curves, one.parameter
-    for curve in (*drawn, *(() if one.against is None else (one.against,))):
-        largest = np.max(np.abs(curve.values), where=np.isfinite(curve.values), initial=0.0)
-        if largest > LARGEST_DRAWN:
-            raise UsageError(
-                f"{curve.label} reaches {largest:.3g} {curve.unit}".rstrip()
-                + f", and no axis goes beyond {LARGEST_DRAWN:g}; draw it in a larger unit, or a "
-                "part of it"
-            )
     if any(curve.is_vector for curve in drawn):
         xs, ys = _in_plane(drawn, one.against)
         return _picture(one, xs, (ys,), is_plane=True)

@@ -41,7 +41,8 @@ def thinned_picture(parts: Iterable[tuple[Drawing, slice]], run_rows: int) -> Pi
     """
     pieces: list[Drawing] = []
     marks: dict[tuple[float, str], None] = {}
-    length = max(1, run_rows // STRETCHES)
+    # of two at least: a line is lifted in the first row of a stretch and goes on from its last
+    length = max(2, run_rows // STRETCHES)
     papers: list[_Paper] = []
     held = 0
     for part, own in parts:

@@ -145,10 +145,9 @@ def integrate(
     branch points as that wants.
 
     `stops`, else the response's, go with the values that the plans watch, in order; `driven` with
-    their inputs. A `taker` takes the rows of
-    one motion in blocks of so many as they are reached, all but the last of them, which are given
-    back: their first one has the number `report.first`. With one, none of equally spaced times is
-    held.
+    their inputs. A `taker` takes the rows of one motion in blocks of so many as they are reached,
+    all but the last of them, which are given back: their first one has the number `report.first`.
+    With one, none of equally spaced times is held.
 
     Raises:
         ValueError: times that do not rise from `begin` on.

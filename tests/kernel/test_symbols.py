@@ -136,6 +136,13 @@ def test_the_built_module_fuses_nothing_else() -> None:
     assert all("vfmsub" in line and "zmm" in line for line in fused)
 
 
+@pytest.mark.skipif(shutil.which("nm") is None or platform.system() != "Linux", reason="no nm here")
+def test_the_module_exports_what_python_asks_for_alone() -> None:
+    command = ["nm", "-D", "--defined-only", str(_kernel.__file__)]
+    found = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert [line.split()[-1] for line in found.splitlines()] == ["PyInit__kernel"]
+
+
 def test_the_module_is_no_larger_than_it_need_be() -> None:
     assert Path(_kernel.__file__).stat().st_size <= MOST_BYTES
 
