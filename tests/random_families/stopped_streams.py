@@ -54,9 +54,11 @@ def write_run(folder: Path, which: int) -> None:
 
 
 def found(folder: Path) -> dict[str, bytes]:
-    """What a reader of the folder finds by name."""
+    """What a reader of the folder finds by name: behind that of a new file there is none until the
+    moment of its set."""
     paths = sorted(folder.iterdir()) if folder.is_dir() else []
-    return {path.name: path.read_bytes() for path in paths if not path.name.startswith(".")}
+    files = [path for path in paths if path.is_file() and not path.name.startswith(".")]
+    return {path.name: path.read_bytes() for path in files}
 
 
 def debris(folder: Path) -> list[str]:
@@ -82,6 +84,8 @@ def forked(work: Callable[[], None], said: Path) -> int:
     except UsageError as error:
         said.write_text(str(error))
         code = REFUSED
+    except KeyboardInterrupt:  # while files were put in their places
+        code = interrupts.INTERRUPTED
     finally:
         os._exit(code)
 

@@ -27,7 +27,8 @@ SETS = [{f"{i}.csv": bytes([65 + which]) * 1000 for i in range(12)} for which in
 
 
 def found(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix == ".csv"}
+    files = [path for path in folder.iterdir() if path.is_file() and path.suffix == ".csv"]
+    return {path.name: path.read_bytes() for path in files}
 
 
 def debris(folder: Path) -> list[str]:
@@ -119,7 +120,8 @@ def run(folder: Path, radius: str) -> subprocess.Popen[bytes]:
 def tables(folder: Path) -> dict[str, bytes]:
     out = folder / "out/crank"
     paths = sorted(out.iterdir()) if out.is_dir() else []
-    return {path.name: path.read_bytes() for path in paths if not path.name.startswith(".")}
+    files = [path for path in paths if path.is_file() and not path.name.startswith(".")]
+    return {path.name: path.read_bytes() for path in files}
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
