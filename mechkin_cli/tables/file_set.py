@@ -157,7 +157,7 @@ def _prepare(
             _write(new + name, files[name])
         except OSError:
             if name in done:
-                done[name] = rows_within(new + name, done[name])
+                done[name] = rows_within(new + name, Path(name).suffix, done[name])
             raise
 
     each(folder, files, write, done)
@@ -184,14 +184,15 @@ _HEADERS = {".csv": 1, ".jsonl": 0}
 """Lines of text before the rows."""
 
 
-def rows_within(path: str, given: int) -> int:
-    """The whole rows of a table of text in a file that could not be written to its end; of another
-    file those that were `given` to it."""
-    header = _HEADERS.get(Path(path).suffix)
+def rows_within(file: str | int, suffix: str, given: int) -> int:
+    """The whole rows of a table of text in a file, by its path or open, that could not be written
+    to its end; of another kind of file those that were `given` to it."""
+    header = _HEADERS.get(suffix)
     if header is None:
         return given
     try:
-        with open(path, "rb") as stream:
+        with open(file, "rb", closefd=isinstance(file, str)) as stream:
+            stream.seek(0)
             lines = sum(part.count(b"\n") for part in iter(lambda: stream.read(PART), b""))
     except OSError:
         return 0

@@ -199,16 +199,46 @@ def _is_as_written(path: Path, known: Digest) -> bool:
     return found == known.checksum
 
 
-class OutputFile(io.RawIOBase):
-    """A file of a run while it is written: in memory as long as it is small, then in the folder of
-    the run's attempt. It takes its place with the others (`OutputFolder.write_run`)."""
+MOST_WITHOUT_NAMES = 64
+"""So many files of a run have no names while they are written; each keeps a descriptor open."""
 
-    def __init__(self, target: Path, begin: Callable[[str], str]) -> None:
+
+def _open_without_name(folder: Path) -> io.FileIO:
+    """A new file of the folder that has no name there: it ends with the process.
+
+    Raises:
+        OSError: the system, or the file system, has no such files.
+    """
+    flag = getattr(os, "O_TMPFILE", None)
+    if flag is None:
+        raise OSError(errno.ENOTSUP, os.strerror(errno.ENOTSUP))
+    return io.FileIO(os.open(folder, flag | os.O_RDWR | os.O_CLOEXEC, 0o666), "rb+")
+
+
+def _give_name(file: io.FileIO, path: str) -> None:
+    """Let a file that has no name stand at the path."""
+    descriptor = file.fileno()
+    try:
+        # only with a descriptor Python follows the link in /proc
+        os.link(f"/proc/self/fd/{descriptor}", path, src_dir_fd=descriptor, follow_symlinks=True)
+    except OSError:  # no /proc, or no right to it
+        from shutil import copyfileobj
+
+        file.seek(0)
+        with open(path, "xb") as copy:
+            copyfileobj(file, copy)
+
+
+class OutputFile(io.RawIOBase):
+    """A file of a run while it is written: in memory as long as it is small, then in the folder,
+    without a name if possible. It takes its place with the others (`OutputFolder.write_run`)."""
+
+    def __init__(self, target: Path, begin: Callable[[str], io.FileIO]) -> None:
         """Begins it.
 
         Args:
             target: where it is to stand.
-            begin: makes the attempt's folder, and says where there the file of a name is.
+            begin: opens a new file of the run, for what gets this name.
 
         `rows` are those of a table that have been given to it.
         """
@@ -228,7 +258,9 @@ class OutputFile(io.RawIOBase):
     def rows_within(self, given: int) -> int:
         """The rows of a table that are on the disk, of which so many were given to it, when more
         cannot be written."""
-        return 0 if self._stream is None else rows_within(str(self._stream.name), given)
+        if self._stream is None or self._stream.closed:
+            return 0
+        return rows_within(self._stream.name, self.target.suffix, given)
 
     def writable(self) -> bool:
         """It is."""
@@ -251,7 +283,7 @@ class OutputFile(io.RawIOBase):
             return view.nbytes
         try:
             if self._stream is None:
-                self._stream = io.FileIO(self._begin(self.target.name), "xb")
+                self._stream = self._begin(self.target.name)
             held, self.held = self.held, None
             for part in (held, view) if held else (view,):
                 _write_all(self._stream, part)
@@ -270,10 +302,31 @@ class OutputFile(io.RawIOBase):
         self.close()
 
     def close(self) -> None:
-        """Ends it."""
+        """Ends it; what has no name waits for one, or for `drop`."""
+        if not self.has_no_name:
+            self.drop()
+        super().close()
+
+    @property
+    def has_no_name(self) -> bool:
+        """Whether it is on the disk, and would go with the process."""
+        stream = self._stream
+        return stream is not None and not stream.closed and isinstance(stream.name, int)
+
+    def give_name(self, path: str) -> None:
+        """Let one that has no name stand at the path.
+
+        Raises:
+            OSError: it cannot.
+        """
+        assert self._stream is not None
+        _give_name(self._stream, path)
+        self.drop()
+
+    def drop(self) -> None:
+        """Lets go of what is on the disk: without a name it is gone."""
         if self._stream is not None:
             self._stream.close()
-        super().close()
 
 
 def _write_all(stream: io.FileIO, data: bytearray | memoryview) -> None:
@@ -312,6 +365,8 @@ class OutputFolder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        for file in self._files.values():
+            file.drop()
         if self._claim is not None:
             self._claim.release()
             self._claim = None
@@ -338,10 +393,12 @@ class OutputFolder:
             self._claimed()
             refuse_special(target)
         earlier = self._files.pop(name, None)
-        if earlier is not None and earlier.held is None:
+        if earlier is not None and earlier.has_no_name:
+            earlier.drop()
+        elif earlier is not None and earlier.held is None:
             with refusal(target):
                 os.unlink(self._new_file(name))
-        file = self._files[name] = OutputFile(target, self._new_file)
+        file = self._files[name] = OutputFile(target, self._open)
         return file
 
     def add(self, name: str, content: bytes) -> None:
@@ -364,7 +421,7 @@ class OutputFolder:
         Raises:
             UsageError: as `write`.
         """
-        files, self._files = self._files, {}
+        files = self._files
         assert all(file.closed for file in files.values())
         with refusal(self.folder / next(iter(files), LISTING)):
             self._claimed()
@@ -372,7 +429,15 @@ class OutputFolder:
         held = {name: bytes(file.held) for name, file in files.items() if file.held is not None}
         held[LISTING] = _listing({name: file.digest for name, file in files.items()})
         rows = {name: file.rows for name, file in files.items()}
-        self._place(held, removed, [name for name in files if name not in held], rows)
+        streamed = [name for name in files if name not in held]
+
+        def give_name(name: str) -> None:
+            if files[name].has_no_name:
+                files[name].give_name(self._new_file(name))
+
+        each(self.folder, streamed, give_name, rows)
+        self._files = {}
+        self._place(held, removed, streamed, rows)
         return [self.folder / name for name in files], removed, changed
 
     def _place(
@@ -393,6 +458,15 @@ class OutputFolder:
         if claim is not None:
             claim.attempt = None
         return targets
+
+    def _open(self, name: str) -> io.FileIO:
+        """Opens a new file of the run. Only with the others it gets its name, where that can be: of
+        a run that is killed before nothing is left."""
+        folder = self._claimed().folder
+        if sum(file.has_no_name for file in self._files.values()) < MOST_WITHOUT_NAMES:
+            with contextlib.suppress(OSError):
+                return _open_without_name(folder)
+        return io.FileIO(self._new_file(name), "xb")
 
     def _new_file(self, name: str) -> str:
         """Where a file of the attempt stands; the first one makes its folder."""

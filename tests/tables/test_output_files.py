@@ -6,6 +6,8 @@ import errno
 import gc
 import io
 import os
+import resource
+import signal
 from pathlib import Path
 
 import pytest
@@ -41,9 +43,34 @@ def write_run(folder: Path, content: dict[str, bytes]) -> None:
         output.write_run()
 
 
-@pytest.fixture
-def little_held(monkeypatch: pytest.MonkeyPatch) -> None:
+def has_files_without_names(folder: Path) -> bool:
+    """Whether the system and the folder's file system have them."""
+    try:
+        room._open_without_name(folder).close()
+    except OSError:
+        return False
+    return True
+
+
+@pytest.fixture(params=["with names", "without names", "some without", "copied"])
+def little_held(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Files of more than 20 bytes are on the disk, where they have names at once, or later, as
+    others of the folder do or as copies."""
     monkeypatch.setattr(room, "HELD_BYTES", 20)
+    link = os.link
+
+    def no_link(source, *given, **named) -> None:
+        if str(source).startswith("/proc/"):
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+        link(source, *given, **named)
+
+    if request.param == "with names":
+        monkeypatch.delattr(os, "O_TMPFILE", raising=False)
+    elif request.param == "some without":
+        monkeypatch.setattr(room, "MOST_WITHOUT_NAMES", 1)
+    elif request.param == "copied":
+        monkeypatch.setattr(os, "link", no_link)
+    return request.param
 
 
 @pytest.mark.usefixtures("little_held")
@@ -94,19 +121,65 @@ def test_a_file_that_is_begun_again_is_the_last_one(tmp_path: Path) -> None:
     assert (files(tmp_path), written) == ({"a.csv": b"3" * 60}, [tmp_path / "a.csv"])
 
 
-@pytest.mark.usefixtures("little_held")
-def test_an_error_of_the_run_leaves_nothing(tmp_path: Path) -> None:
+def test_an_error_of_the_run_leaves_nothing(tmp_path: Path, little_held: str) -> None:
     write_run(tmp_path, OLD)
+    hidden = 2 if little_held == "with names" or not has_files_without_names(tmp_path) else 1
 
     def fails() -> None:
         with OutputFolder(tmp_path) as output, output.begin("a.csv") as file:
             file.write(b"x" * 100)
-            assert len(debris(tmp_path)) == 2
+            assert len(debris(tmp_path)) == hidden
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
         fails()
     assert (files(tmp_path), debris(tmp_path)) == (OLD, [room.LISTING])
+
+
+@pytest.mark.usefixtures("little_held")
+def test_more_files_than_descriptors(tmp_path: Path) -> None:
+    """Those without names are open until they get theirs, so there are not many of them."""
+    code = child(lambda: _many_files(tmp_path), 10**9, die)
+    assert code == 77
+    assert len(files(tmp_path)) == 300
+
+
+def _many_files(folder: Path) -> None:
+    resource.setrlimit(resource.RLIMIT_NOFILE, (150, 150))
+    write_run(folder, {f"{i}.csv": b"x" * 30 for i in range(300)})
+
+
+@pytest.mark.parametrize("before", [{}, OLD], ids=["first run", "second run"])
+def test_a_run_that_is_killed_before_its_end_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: dict[str, bytes]
+) -> None:
+    """Not even hidden."""
+    if not has_files_without_names(tmp_path):
+        pytest.skip("a file system without files that have no names")
+    monkeypatch.setattr(room, "HELD_BYTES", 20)
+    write_run(tmp_path, before)
+    found = sorted(tmp_path.iterdir())
+
+    def dies() -> None:
+        with OutputFolder(tmp_path) as output:
+            for name in ("a.csv", "c.csv"):
+                output.add(name, b"new" * 30)
+            with output.begin("d.csv") as file:
+                file.write(b"x" * 30)
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    assert child(dies, 10**9, die) == -signal.SIGKILL
+    assert sorted(tmp_path.iterdir()) == found
+
+
+def test_files_get_their_permissions_from_the_user(tmp_path: Path, little_held: str) -> None:
+    before = os.umask(0o027)
+    try:
+        write_run(tmp_path, {"large.csv": b"x" * 30, "small.csv": b"x"})
+    finally:
+        os.umask(before)
+    modes = [(tmp_path / name).stat().st_mode & 0o777 for name in ("large.csv", "small.csv")]
+    assert modes == [0o640, 0o640], little_held
 
 
 def test_a_place_that_cannot_be_written_is_refused_when_a_file_is_begun(tmp_path: Path) -> None:
