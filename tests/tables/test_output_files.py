@@ -73,6 +73,7 @@ def little_held(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
     return request.param
 
 
+@pytest.mark.parametrize("little_held", ["some without"], indirect=True)
 @pytest.mark.usefixtures("little_held")
 @pytest.mark.parametrize("fault", [die, fail, interrupt])
 @pytest.mark.parametrize("before", [{}, OLD], ids=["first run", "second run"])
