@@ -199,15 +199,16 @@ def _is_as_written(path: Path, known: Digest) -> bool:
     return found == known.checksum
 
 
-MOST_WITHOUT_NAMES = 64
-"""So many files of a run have no names while they are written; each keeps a descriptor open."""
+MOST_UNNAMED = 64
+"""Large files of a run that are without names at a time; each keeps a descriptor open."""
 
 
-def _open_without_name(folder: Path) -> io.FileIO:
-    """A new file of the folder that has no name there: it ends with the process.
+def _open_unnamed(folder: Path) -> io.FileIO:
+    """A new file in the folder that has no name there: unless it gets one, it is gone when it is
+    closed, or with the process.
 
     Raises:
-        OSError: the system, or the file system, has no such files.
+        OSError: the system, or the file system, has no unnamed files.
     """
     flag = getattr(os, "O_TMPFILE", None)
     if flag is None:
@@ -216,10 +217,10 @@ def _open_without_name(folder: Path) -> io.FileIO:
 
 
 def _give_name(file: io.FileIO, path: str) -> None:
-    """Let a file that has no name stand at the path."""
+    """Lets an unnamed file stand at the path."""
     descriptor = file.fileno()
     try:
-        # only with a descriptor Python follows the link in /proc
+        # Python follows the link in /proc only when it is given a descriptor, too
         os.link(f"/proc/self/fd/{descriptor}", path, src_dir_fd=descriptor, follow_symlinks=True)
     except OSError:  # no /proc, or no right to it
         from shutil import copyfileobj
@@ -231,7 +232,8 @@ def _give_name(file: io.FileIO, path: str) -> None:
 
 class OutputFile(io.RawIOBase):
     """A file of a run while it is written: in memory as long as it is small, then in the folder,
-    without a name if possible. It takes its place with the others (`OutputFolder.write_run`)."""
+    unnamed where there are such files. It takes its place with the others
+    (`OutputFolder.write_run`)."""
 
     def __init__(self, target: Path, begin: Callable[[str], io.FileIO]) -> None:
         """Begins it.
@@ -302,29 +304,29 @@ class OutputFile(io.RawIOBase):
         self.close()
 
     def close(self) -> None:
-        """Ends it; what has no name waits for one, or for `drop`."""
-        if not self.has_no_name:
+        """Ends it; an unnamed file waits for its name, or for `drop`."""
+        if not self.is_unnamed:
             self.drop()
         super().close()
 
     @property
-    def has_no_name(self) -> bool:
-        """Whether it is on the disk, and would go with the process."""
+    def is_unnamed(self) -> bool:
+        """Whether it is on the disk without a name."""
         stream = self._stream
         return stream is not None and not stream.closed and isinstance(stream.name, int)
 
     def give_name(self, path: str) -> None:
-        """Let one that has no name stand at the path.
+        """Lets an unnamed file stand at the path.
 
         Raises:
-            OSError: it cannot.
+            OSError: it cannot be put there.
         """
         assert self._stream is not None
         _give_name(self._stream, path)
         self.drop()
 
     def drop(self) -> None:
-        """Lets go of what is on the disk: without a name it is gone."""
+        """Closes what is on the disk; an unnamed file is gone then."""
         if self._stream is not None:
             self._stream.close()
 
@@ -393,7 +395,7 @@ class OutputFolder:
             self._claimed()
             refuse_special(target)
         earlier = self._files.pop(name, None)
-        if earlier is not None and earlier.has_no_name:
+        if earlier is not None and earlier.is_unnamed:
             earlier.drop()
         elif earlier is not None and earlier.held is None:
             with refusal(target):
@@ -432,7 +434,7 @@ class OutputFolder:
         streamed = [name for name in files if name not in held]
 
         def give_name(name: str) -> None:
-            if files[name].has_no_name:
+            if files[name].is_unnamed:
                 files[name].give_name(self._new_file(name))
 
         each(self.folder, streamed, give_name, rows)
@@ -460,12 +462,12 @@ class OutputFolder:
         return targets
 
     def _open(self, name: str) -> io.FileIO:
-        """Opens a new file of the run. Only with the others it gets its name, where that can be: of
-        a run that is killed before nothing is left."""
+        """Opens a new file of the run: an unnamed one where there are such files, of which a killed
+        run leaves nothing, else one in the attempt's folder."""
         folder = self._claimed().folder
-        if sum(file.has_no_name for file in self._files.values()) < MOST_WITHOUT_NAMES:
+        if sum(file.is_unnamed for file in self._files.values()) < MOST_UNNAMED:
             with contextlib.suppress(OSError):
-                return _open_without_name(folder)
+                return _open_unnamed(folder)
         return io.FileIO(self._new_file(name), "xb")
 
     def _new_file(self, name: str) -> str:

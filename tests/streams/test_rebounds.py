@@ -17,7 +17,9 @@ from mechkin_cli import tolerances
 from mechkin_cli.response import resting, stretches
 from mechkin_cli.tables import Columns, rows_table
 
-BLOCKS = range(1, 21) if "MECHKIN_RANDOM" in os.environ else (1, 2, 3, 4, 5, 7, 10, 13, 20)
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
+
+BLOCKS = range(1, 21) if TIMES > 1 else (1, 2, 3, 4, 5, 7, 10, 13, 20)
 """Rows of a block."""
 
 

@@ -43,19 +43,19 @@ def write_run(folder: Path, content: dict[str, bytes]) -> None:
         output.write_run()
 
 
-def has_files_without_names(folder: Path) -> bool:
-    """Whether the system and the folder's file system have them."""
+def has_unnamed_files(folder: Path) -> bool:
+    """Whether the system and the file system of the folder have them."""
     try:
-        room._open_without_name(folder).close()
+        room._open_unnamed(folder).close()
     except OSError:
         return False
     return True
 
 
-@pytest.fixture(params=["with names", "without names", "some without", "copied"])
+@pytest.fixture(params=["named", "unnamed", "some unnamed", "copied"])
 def little_held(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Files of more than 20 bytes are on the disk, where they have names at once, or later, as
-    others of the folder do or as copies."""
+    """Files of more than 20 bytes are on the disk: named at once, unnamed until the set is
+    complete, some of each, or unnamed and then copied, where they cannot be linked."""
     monkeypatch.setattr(room, "HELD_BYTES", 20)
     link = os.link
 
@@ -64,16 +64,16 @@ def little_held(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
         link(source, *given, **named)
 
-    if request.param == "with names":
+    if request.param == "named":
         monkeypatch.delattr(os, "O_TMPFILE", raising=False)
-    elif request.param == "some without":
-        monkeypatch.setattr(room, "MOST_WITHOUT_NAMES", 1)
+    elif request.param == "some unnamed":
+        monkeypatch.setattr(room, "MOST_UNNAMED", 1)
     elif request.param == "copied":
         monkeypatch.setattr(os, "link", no_link)
     return request.param
 
 
-@pytest.mark.parametrize("little_held", ["some without"], indirect=True)
+@pytest.mark.parametrize("little_held", ["some unnamed"], indirect=True)
 @pytest.mark.usefixtures("little_held")
 @pytest.mark.parametrize("fault", [die, fail, interrupt])
 @pytest.mark.parametrize("before", [{}, OLD], ids=["first run", "second run"])
@@ -124,7 +124,7 @@ def test_a_file_that_is_begun_again_is_the_last_one(tmp_path: Path) -> None:
 
 def test_an_error_of_the_run_leaves_nothing(tmp_path: Path, little_held: str) -> None:
     write_run(tmp_path, OLD)
-    hidden = 2 if little_held == "with names" or not has_files_without_names(tmp_path) else 1
+    hidden = 2 if little_held == "named" or not has_unnamed_files(tmp_path) else 1
 
     def fails() -> None:
         with OutputFolder(tmp_path) as output, output.begin("a.csv") as file:
@@ -139,7 +139,7 @@ def test_an_error_of_the_run_leaves_nothing(tmp_path: Path, little_held: str) ->
 
 @pytest.mark.usefixtures("little_held")
 def test_more_files_than_descriptors(tmp_path: Path) -> None:
-    """Those without names are open until they get theirs, so there are not many of them."""
+    """Unnamed files are open until the set is complete, so there are not many of them."""
     code = child(lambda: _many_files(tmp_path), 10**9, die)
     assert code == 77
     assert len(files(tmp_path)) == 300
@@ -155,8 +155,8 @@ def test_a_run_that_is_killed_before_its_end_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: dict[str, bytes]
 ) -> None:
     """Not even hidden."""
-    if not has_files_without_names(tmp_path):
-        pytest.skip("a file system without files that have no names")
+    if not has_unnamed_files(tmp_path):
+        pytest.skip("a file system without unnamed files")
     monkeypatch.setattr(room, "HELD_BYTES", 20)
     write_run(tmp_path, before)
     found = sorted(tmp_path.iterdir())
